@@ -20,6 +20,7 @@
 #include "estimator/external/external_process.h"
 #include "eval/metrics/metrics.h"
 #include "eval/sweep/plan/plan.h"
+#include "eval/sweep/sweep_folder.h"
 
 namespace saccade {
 namespace {
@@ -71,6 +72,12 @@ void add_submissions(SweepConfig& sweep, std::span<const fs::path> folders) {
     throw InputError("--submission",
                      "goes not with a sweep that has 'grid' or 'variants', which are keys of a "
                      "module");
+  if (sweep.generate && sweep.generate->disk_gb)
+    throw InputError("--submission",
+                     "goes not with 'generate.disk_gb', which makes datasets alone");
+  for (const SweepDataset& dataset : sweep.datasets)
+    if (!dataset.against.empty())
+      throw InputError("--submission", "goes not with datasets that are scored 'against' others");
   for (const fs::path& folder : folders) {
     static_cast<void>(read_submission(folder));
     SweepConfiguration configuration;
@@ -85,7 +92,9 @@ void add_submissions(SweepConfig& sweep, std::span<const fs::path> folders) {
   }
 }
 
-void prepare_submissions(std::span<const fs::path> submissions) {
+void prepare_submissions(std::span<const fs::path> submissions, const fs::path& folder) {
+  std::optional<SweepFolderLock> lock;
+  if (!submissions.empty() && fs::exists(folder)) lock.emplace(folder);
   for (const fs::path& submission : submissions) {
     const AdapterConfig adapter = read_submission(submission);
     if (adapter.prepare.empty()) continue;

@@ -14,8 +14,10 @@ namespace saccade {
 void add_submissions(SweepConfig& sweep, std::span<const std::filesystem::path> folders);
 
 /// Runs the commands that prepare them, in their folders, where what they print becomes prepare.log.
-/// Throws InputError where one fails.
-void prepare_submissions(std::span<const std::filesystem::path> submissions);
+/// Throws InputError where one fails, and where another program is filling the sweep's `folder`,
+/// which may be running them.
+void prepare_submissions(std::span<const std::filesystem::path> submissions,
+                         const std::filesystem::path& folder);
 
 /// A line for each: licence, link, and its time beside the one that its authors state.
 [[nodiscard]] std::string describe_submissions(std::span<const std::filesystem::path> submissions,

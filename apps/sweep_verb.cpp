@@ -141,13 +141,13 @@ void sweep(SweepVerbOptions options) {
     if (!options.pack.empty()) pack(config, options);
     return;
   }
-  if (!options.merge.empty()) merge(config, options);
   if (options.dry_run) {
     fmt::print("{}", config.generate ? estimate_generation(config, options.output, options.jobs)
                                      : describe_sweep(config, options.output));
     return;
   }
-  prepare_submissions(options.submissions);
+  prepare_submissions(options.submissions, options.output);
+  if (!options.merge.empty()) merge(config, options);
   const SweepSummary summary = run_sweep(config, options.output, *launcher, options.jobs);
   if (summary.interrupted)
     throw std::runtime_error("interrupted; the same command goes on from here");
@@ -204,18 +204,22 @@ void add_sweep_options(CLI::App& verb, SweepVerbOptions& options) {
           "accepts). Speeds are comparable only with 1; `timing: true` in the file requires it.")
       ->type_name("N")
       ->check(whole_number(1, 4096));
-  verb.add_flag("--dry-run", options.dry_run,
-                "Print the command lines and what would be skipped; for a sweep that generates "
-                "datasets, estimate events, bytes and time from a short calibration run.");
-  verb.add_flag("--status", options.status,
-                "Print how many jobs are done, running, failed and waiting, also while another "
-                "program runs them, and stop.");
+  CLI::Option* dry_run =
+      verb.add_flag("--dry-run", options.dry_run,
+                    "Print the command lines and what would be skipped; for a sweep that generates "
+                    "datasets, estimate events, bytes and time from a short calibration run.");
+  CLI::Option* status =
+      verb.add_flag("--status", options.status,
+                    "Print how many jobs are done, running, failed and waiting, also while another "
+                    "program runs them, and stop.");
   verb.add_flag("--follow", options.follow,
-                "With --status: print it again every two seconds until the sweep has ended.");
-  verb.add_option("--jobs-json", options.jobs_json,
-                  "Write the jobs with their commands and what each needs as JSON, for another "
-                  "workflow manager, and stop.")
-      ->type_name("FILE");
+                "With --status: print it again every two seconds until the sweep has ended.")
+      ->needs(status);
+  CLI::Option* json =
+      verb.add_option("--jobs-json", options.jobs_json,
+                      "Write the jobs with their commands and what each needs as JSON, for another "
+                      "workflow manager, and stop.")
+          ->type_name("FILE");
   verb.add_option(
           "--submission", options.submissions,
           "Also run the method in this folder, which holds an adapter.yaml with its licence "
@@ -223,16 +227,24 @@ void add_sweep_options(CLI::App& verb, SweepVerbOptions& options) {
       ->type_name("DIR")
       ->take_all()
       ->allow_extra_args(false);
-  verb.add_option("--merge", options.merge,
-                  "Folders of the same sweep, as from other clusters: take what they have done, "
-                  "then go on.")
-      ->type_name("DIR");
-  verb.add_flag("--clean", options.clean,
-                "Remove generated datasets that the sweep does not plan any more, and stop.");
-  verb.add_option("--pack", options.pack,
-                  "Write the generated datasets as archives, one for each split and shard, and "
-                  "stop.")
-      ->type_name("DIR");
+  CLI::Option* merge =
+      verb.add_option(
+              "--merge", options.merge,
+              "Folders of the same sweep, as from other clusters: take what they have done, "
+              "then go on.")
+          ->type_name("DIR");
+  CLI::Option* clean =
+      verb.add_flag("--clean", options.clean,
+                    "Remove generated datasets that the sweep does not plan any more, and stop.");
+  CLI::Option* pack =
+      verb.add_option("--pack", options.pack,
+                      "Write the generated datasets as archives, one for each split and shard, and "
+                      "stop.")
+          ->type_name("DIR");
+  // Each does one thing and stops, but for --merge, which goes on.
+  const std::vector<CLI::Option*> modes{dry_run, status, json, merge, clean, pack};
+  for (std::size_t i = 0; i < modes.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k) modes[i]->excludes(modes[k]);
   verb.add_option("--set", options.overrides,
                   "Override one key of the sweep file, e.g. --set repeat=1 (repeatable).")
       ->type_name("KEY.PATH=VALUE")

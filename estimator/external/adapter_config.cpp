@@ -157,11 +157,9 @@ void describe(config::Fields& fields, AdapterConfig& config) {
              "Time limit of one repetition, in seconds. The program is ended after it.")
       .above(0);
   fields.value("seed", config.seed, "Value of the placeholder {seed}.");
-  fields
-      .path("container", config.container,
-            "Image of Apptainer (or Singularity) in which the command runs. It sees the run's "
-            "folder, the dataset and the folders of `files`.")
-      .must_exist();
+  fields.path("container", config.container,
+              "Image of Apptainer (or Singularity) in which the command runs. It sees the run's "
+              "folder, the dataset and the folders of `files`.");
   fields.expect(!config.container || !config.python, "container",
                 "is for a command; a method of the Python module runs by $SACCADE_PYTHON");
   fields.value("prepare", config.prepare,

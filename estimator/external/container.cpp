@@ -25,6 +25,13 @@ bool is_on_search_path(const char* program) {
   return false;
 }
 
+/// Apptainer takes these characters for its own.
+std::string bindable(const fs::path& folder) {
+  if (folder.string().find_first_of(":,") != std::string::npos)
+    throw InputError(folder.string(), "cannot be shown to a container: its name holds ':' or ','");
+  return folder.string();
+}
+
 std::string runtime() {
   for (const char* program : {"apptainer", "singularity"})
     if (is_on_search_path(program)) return program;
@@ -37,12 +44,14 @@ std::string runtime() {
 std::vector<std::string> words_in_container(const std::vector<std::string>& words,
                                             const fs::path& image, const fs::path& writable,
                                             std::span<const fs::path> readable) {
-  std::vector<std::string> all{runtime(), "exec", "--bind", writable.string()};
+  std::vector<std::string> all{runtime(), "exec"};
   std::set<std::string> bound;
   for (const fs::path& folder : readable)
-    if (bound.insert(folder.string()).second)
+    if (bound.insert(bindable(folder)).second)
       all.insert(all.end(), {"--bind", folder.string() + ":" + folder.string() + ":ro"});
-  all.insert(all.end(), {"--pwd", (writable / "output").string(), image.string()});
+  // Last, so that no folder above it that may only be read hides it.
+  all.insert(all.end(), {"--bind", bindable(writable), "--pwd", (writable / "output").string(),
+                         image.string()});
   all.insert(all.end(), words.begin(), words.end());
   return all;
 }

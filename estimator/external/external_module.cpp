@@ -122,6 +122,8 @@ ExternalFound take_output(const fs::path& run, const AdapterConfig& config,
 void check_program(const AdapterConfig& config) {
   if (shell_words(command_of(config)).empty())
     throw InputError("command", "the adapter must state the program's command line (-c ADAPTER)");
+  if (config.container && !fs::exists(*config.container))
+    throw InputError("container", "no such file '" + config.container->string() + "'");
   for (const auto& [name, file] : config.files)
     if (!fs::exists(file))
       throw InputError("files." + name, "no such file '" + file.string() + "'");

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/error.h"
 #include "core/io/files/atomic_file.h"
 #include "core/io/files/sha256.h"
 
@@ -104,9 +105,12 @@ void write_run(const ResultRow& row, const MetricTable& metrics, std::size_t ind
 std::size_t write_mlflow(ResultReader& reader, std::string_view where, const fs::path& folder) {
   const std::vector<ResultRow> rows = reader.select(where, true);
   const std::vector<std::string> names = reader.metric_names();
+  for (const std::string& name : names)
+    if (name.empty() || name.front() == '.' || name.find('/') != std::string::npos)
+      throw InputError("--format mlflow", "the metric '" + name + "' cannot be the name of a file");
   const MetricTable metrics = reader.metrics(rows, names);
-  // MLflow takes the names of experiments' folders for numbers.
-  const std::string experiment = "1";
+  // A number as MLflow draws them, always the same one: small ones are those of other experiments.
+  const std::string experiment = "530871943702615348";
   write_experiment(folder, experiment, rows.empty() ? 0 : milliseconds(rows.front().added));
   for (std::size_t i = 0; i < rows.size(); ++i)
     write_run(rows[i], metrics, i, names, folder, experiment);

@@ -123,9 +123,9 @@ void write_archive(const fs::path& file, const fs::path& record, const Archive& 
   AtomicFile output(file);
   // Nothing but the datasets themselves may decide over the bytes.
   run_program({"tar", "--create", "--file=" + output.path().string(), "--format=ustar",
-               "--sort=name", "--mtime=@0", "--owner=0", "--group=0", "--numeric-owner",
-               "--mode=u=rwX,go=rX", "--directory=" + archive.folder.string(), "--null",
-               "--files-from=" + (scratch.path() / "names").string()});
+               "--dereference", "--sort=name", "--mtime=@0", "--owner=0", "--group=0",
+               "--numeric-owner", "--mode=u=rwX,go=rX", "--directory=" + archive.folder.string(),
+               "--null", "--files-from=" + (scratch.path() / "names").string()});
   const std::string hash = sha256_of_file(output.path());
   const auto bytes = fs::file_size(output.path());
   output.commit();
@@ -145,9 +145,10 @@ CleanSummary clean_generated(const SweepConfig& sweep, const fs::path& folder) {
     throw InputError(folder.string(), "holds no sweep (no sweep.yaml) (--clean)");
   const fs::path here = fs::absolute(folder).lexically_normal();
   const SweepFolderLock lock(here);
-  std::set<fs::path> planned;
+  std::set<fs::path> planned, planned_records;
   for (const SweepJob& job : plan_sweep(sweep, here).simulations) {
     planned.insert(job.output);
+    planned_records.insert(job.name);  // whatever the shard
     // What an interrupted simulation left is gone on with.
     planned.insert(job.output.parent_path() /
                    ("." + job.output.filename().string() + ".unfinished"));
@@ -163,7 +164,8 @@ CleanSummary clean_generated(const SweepConfig& sweep, const fs::path& folder) {
     std::error_code error;
     fs::remove_all(candidate, error);
     if (error) throw InputError(candidate.string(), error.message());
-    fs::remove_all(here / "jobs" / candidate.filename(), error);
+    if (!planned_records.contains(candidate.filename()))
+      fs::remove_all(here / "jobs" / candidate.filename(), error);
     summary.removed.push_back(candidate);
   }
   return summary;

@@ -2,13 +2,16 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 #include "core/config/config.h"
 #include "core/error.h"
 #include "core/io/files/atomic_file.h"
+#include "core/io/files/sha256.h"
 #include "core/io/run/run_record.h"
 #include "core/process/progress.h"
+#include "eval/store/result_store.h"
 #include "eval/sweep/plan/job_record.h"
 #include "eval/sweep/plan/plan.h"
 #include "eval/sweep/sweep_folder.h"
@@ -18,16 +21,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Other machines keep files elsewhere: of a file's path the name counts.
+/// "12 bytes of 1769..." -> "12 bytes": copies have other times.
+std::string without_time(const std::string& content) {
+  constexpr std::string_view kBytes = " bytes";
+  const std::size_t at = content.find(" bytes of ");
+  return at == std::string::npos ? content : content.substr(0, at + kBytes.size());
+}
+
+/// Other machines keep files elsewhere: of a file's path the name counts. The runs that a job starts
+/// from are compared as jobs of their own.
 Fingerprint without_folders(const Fingerprint& inputs) {
   Fingerprint result;
   for (const auto& [name, content] : inputs) {
-    const bool is_path = name.starts_with('/');
-    std::string key = is_path ? fs::path(name).filename().string() : name;
+    if (name.starts_with("the run ")) continue;
+    std::string key = name.starts_with('/') ? fs::path(name).filename().string() : name;
     // Two files of one name in two folders, as scene.yaml: both count.
-    while (result.contains(key) && result.at(key) != content) key += " (another)";
-    // Neighbours of a scene are told by size and time, which copying changes.
-    if (!is_path || content.find(" bytes of ") == std::string::npos) result[key] = content;
+    while (result.contains(key) && result.at(key) != without_time(content)) key += " (another)";
+    result[key] = without_time(content);
   }
   return result;
 }
@@ -71,13 +81,20 @@ class Merger {
       if (!why.empty()) return why;
       const fs::path source = other / job.output.lexically_relative(folder_);
       if (!fs::exists(source / job.marker())) return "its output is gone";
-      if (job.makes_run)
+      if (record.result_sha256 != sha256_of_file(source / job.marker()))
+        return "its output was replaced there";
+      if (fs::canonical(source) == fs::weakly_canonical(job.output))
+        return "its output is the one that is here";
+      if (job.makes_run && !job.point.module.empty())
         copy_run(source, job);
       else
-        link_dataset(source, job);
+        copy_dataset(source, job);
+      if (!job.makes_run || job.point.module.empty()) copy_scores(other, job);
       write_job_record(record_in(folder_, job), job, inputs, record.wall_s);
       return "";
     } catch (const InputError& error) {
+      return error.what();
+    } catch (const fs::filesystem_error& error) {
       return error.what();
     }
   }
@@ -90,13 +107,35 @@ class Merger {
     record.dataset = job.dataset;
     write_run_record(copy.path() / "run.yaml", record);
     copy.commit();
+    keep_result(job.output);
   }
 
-  static void link_dataset(const fs::path& source, const SweepJob& job) {
+  /// One of the cache is linked, as `saccade simulate --cached` does.
+  static void copy_dataset(const fs::path& source, const SweepJob& job) {
+    std::error_code error;
+    // Of a link the link itself is replaced, not what it leads to.
+    if (fs::is_symlink(job.output, error)) fs::remove(job.output);
+    if (!fs::is_symlink(source)) {
+      AtomicFolder copy(job.output, job.marker());
+      fs::copy(source, copy.path(),
+               fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+      copy.commit();
+      return;
+    }
+    const fs::path target = fs::canonical(source);
     fs::create_directories(job.output.parent_path());
-    std::error_code ignored;
-    fs::remove_all(job.output, ignored);
-    fs::create_directory_symlink(fs::canonical(source), job.output);
+    fs::remove_all(job.output, error);
+    fs::create_directory_symlink(target, job.output);
+  }
+
+  /// Of events that are scored against those of another dataset.
+  void copy_scores(const fs::path& other, const SweepJob& job) const {
+    if (job.scores.empty()) return;
+    const fs::path source = other / job.scores.lexically_relative(folder_);
+    AtomicFolder copy(job.scores.parent_path(), "metrics.json");
+    fs::copy(source.parent_path(), copy.path(),
+             fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+    copy.commit();
   }
 
   const fs::path& folder_;

@@ -20,9 +20,9 @@ struct MergeSummary {
 };
 
 /// Takes what other folders of the same sweep have done, as on other clusters, into `folder`: runs
-/// are copied, datasets are linked where they stand. A job is taken where it was made by the same
-/// command from equal inputs (files may lie elsewhere) by the same program; what is done in `folder`
-/// itself stays. A sweep there then makes what no folder has. Throws InputError where `folder` holds
+/// and datasets are copied, datasets of the cache linked. A job is taken where it was made by the
+/// same command from equal inputs (files may lie elsewhere) by the same program; what is done in
+/// `folder` itself stays. A sweep there then makes what no folder has. Throws InputError where `folder` holds
 /// something else or one of `others` is no sweep.
 MergeSummary merge_sweeps(const SweepConfig& sweep, const std::filesystem::path& folder,
                           std::span<const std::filesystem::path> others);

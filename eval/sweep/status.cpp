@@ -6,12 +6,14 @@
 #include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include "core/error.h"
+#include "core/io/files/atomic_file.h"
 #include "eval/report/assets.h"
 #include "eval/report/html.h"
 #include "eval/sweep/plan/plan.h"
@@ -21,6 +23,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// In the folder of a job, and in that of the sweep.
+constexpr const char* kFailedFile = "failed.txt";
+constexpr const char* kHeldFile = "held.txt";
 constexpr double kRecentS = 600;
 constexpr std::size_t kShownFailures = 10;
 
@@ -56,11 +61,14 @@ std::size_t& count_of(JobCounts& counts, Condition condition) {
 /// Looks at the files of jobs.
 class Observer {
  public:
-  Observer(const fs::path& folder, SweepStatus& status) : folder_(folder), status_(status) {}
+  Observer(const fs::path& folder, SweepStatus& status) : folder_(folder), status_(status) {
+    std::ifstream held(folder / kHeldFile);
+    for (std::string name; std::getline(held, name);) held_.insert(name);
+  }
 
   void look_at(const std::vector<SweepJob>& jobs, const char* name) {
     for (const SweepJob& job : jobs) {
-      if (job.state == JobState::kHeld) continue;
+      if (job.state == JobState::kHeld || held_.contains(job.name)) continue;
       const Condition condition = condition_of(job);
       ++count_of(status_.jobs, condition);
       ++count_of(part(name != nullptr ? name : job.point.configuration), condition);
@@ -92,8 +100,12 @@ class Observer {
       if (age_s <= kRecentS) ages_s_.push_back(age_s);
       return Condition::kDone;
     }
-    if (!fs::exists(job_folder / "log.txt", none)) return Condition::kWaiting;
-    const std::string failure = failure_in(job_folder / "log.txt");
+    std::ifstream mark(job_folder / kFailedFile);
+    std::string failure;
+    if (!std::getline(mark, failure)) {
+      if (!fs::exists(job_folder / "log.txt", none)) return Condition::kWaiting;
+      failure = failure_in(job_folder / "log.txt");
+    }
     if (failure.empty()) return Condition::kRunning;
     status_.failures.emplace_back(job.name, failure);
     return Condition::kFailed;
@@ -101,6 +113,7 @@ class Observer {
 
   const fs::path& folder_;
   SweepStatus& status_;
+  std::set<std::string> held_;  ///< when an earlier program ended
   std::vector<double> ages_s_;  ///< of the records of the last kRecentS
 };
 
@@ -129,6 +142,27 @@ std::string bar_html(const JobCounts& counts) {
 }
 
 }  // namespace
+
+void mark_failed(const fs::path& folder, const SweepJob& job) {
+  const fs::path file = folder / "jobs" / job.name / kFailedFile;
+  std::error_code ignored;
+  if (job.failure.empty())
+    fs::remove(file, ignored);
+  else
+    write_atomically(file, job.failure + "\n");
+}
+
+void mark_held(const fs::path& folder, const SweepPlan& plan) {
+  std::string names;
+  for (const auto* jobs : {&plan.simulations, &plan.runs})
+    for (const SweepJob& job : *jobs)
+      if (job.state == JobState::kHeld) names += job.name + "\n";
+  std::error_code ignored;
+  if (names.empty())
+    fs::remove(folder / kHeldFile, ignored);
+  else
+    write_atomically(folder / kHeldFile, names);
+}
 
 std::optional<double> SweepStatus::left_s() const {
   if (!jobs_per_s || has_ended()) return std::nullopt;
@@ -161,7 +195,7 @@ std::string status_text(const SweepStatus& status) {
   return text;
 }
 
-std::string status_page(const SweepStatus& status, const std::string& title) {
+std::string status_page(const SweepStatus& status, const std::string& title, bool has_ended) {
   std::string body = fmt::format("<h1>{}</h1>\n<p>{}<br>{}</p>\n", escape_html(title),
                                  counts_text(status.jobs), rate_text(status));
   body += bar_html(status.jobs);
@@ -182,7 +216,7 @@ std::string status_page(const SweepStatus& status, const std::string& title) {
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
       "<meta name=\"color-scheme\" content=\"light dark\"><title>{}</title>\n"
       "<style>\n{}\n</style></head><body>\n<main>{}</main>\n</body></html>\n",
-      status.has_ended() ? "" : "<meta http-equiv=\"refresh\" content=\"5\">", escape_html(title),
+      has_ended ? "" : "<meta http-equiv=\"refresh\" content=\"5\">", escape_html(title),
       assets::report_css, body);
 }
 

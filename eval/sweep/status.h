@@ -34,7 +34,8 @@ struct SweepStatus {
 };
 
 /// From the files in the folder alone. A job is done where its record exists; whether the record is
-/// still current is the matter of describe_sweep(). One that is held for good is left out.
+/// still current is the matter of describe_sweep(). One that is held is left out: of this plan
+/// (JobState::kHeld), or of an earlier program that ended (mark_held()).
 [[nodiscard]] SweepStatus sweep_status(const SweepPlan& plan, const std::filesystem::path& folder);
 
 /// The same of a sweep that another program may be filling. Throws InputError where `folder` is no
@@ -42,12 +43,19 @@ struct SweepStatus {
 [[nodiscard]] SweepStatus sweep_status(const SweepConfig& sweep,
                                        const std::filesystem::path& folder);
 
+/// Leaves in `folder` for sweep_status() why a job failed; empty: that it has not.
+void mark_failed(const std::filesystem::path& folder, const SweepJob& job);
+
+/// Leaves in `folder` which jobs of the plan are held, for good where the sweep has ended.
+void mark_held(const std::filesystem::path& folder, const SweepPlan& plan);
+
 /// Lines for a terminal: the numbers, the rate with the time left, the first failures.
 [[nodiscard]] std::string status_text(const SweepStatus& status);
 
-/// A page with the same and a bar for every part. Until the sweep has ended the browser loads it
+/// A page with the same and a bar for every part. Unless the sweep `has_ended` the browser loads it
 /// again every few seconds.
-[[nodiscard]] std::string status_page(const SweepStatus& status, const std::string& title);
+[[nodiscard]] std::string status_page(const SweepStatus& status, const std::string& title,
+                                      bool has_ended);
 
 /// The jobs for another workflow manager, as JSON:
 ///   {"folder": DIR, "threads": N, "jobs": [{"name", "needs": [names], "output", "scores", "log",

@@ -101,13 +101,14 @@ class Phase {
       job.state = JobState::kFailed;
       job.failure = no_dataset ? "failed: without its dataset, which failed"
                                : "failed: without the run that it starts from, which failed";
+      mark_failed(folder_, job);
     }
   }
 
   /// False when it was interrupted. `on_wait` is called several times per second.
   bool run(Launcher& launcher, const LaunchLimits& limits, const std::string& label,
            const std::function<void()>& on_wait) {
-    select_due();
+    select_due(launcher.environment());
     if (due_.empty()) return true;
     const auto all = static_cast<std::size_t>(std::count_if(
         jobs_.begin(), jobs_.end(),
@@ -164,18 +165,20 @@ class Phase {
     costs_.emplace(kind_of(launch), cost);
   }
 
-  void select_due() {
+  void select_due(const std::string& environment) {
     JobInputs inputs;
     for (std::size_t i = 0; i < jobs_.size(); ++i) {
       SweepJob& job = jobs_[i];
       if (job.stage != stage_ || job.state != JobState::kPending) continue;
       const fs::path job_folder = folder_ / "jobs" / job.name;
       Fingerprint job_inputs = inputs.of(job);
+      if (!environment.empty()) job_inputs["the container"] = environment;
       if (why_to_run(job, job_folder / "job.yaml", job_inputs).empty()) {
         job.state = JobState::kSkipped;
         continue;
       }
       fs::remove(job_folder / "job.yaml");
+      mark_failed(folder_, job);  // not any more
       due_.push_back(i);
       inputs_.push_back(std::move(job_inputs));
       launches_.push_back(
@@ -193,6 +196,7 @@ class Phase {
       return;
     }
     jobs_[i].failure = failure_of(result, log, fs::absolute(folder_).lexically_normal());
+    mark_failed(folder_, jobs_[i]);
     report(jobs_[i].name, result, log, progress);
   }
 
@@ -228,11 +232,12 @@ class StatusPage {
       : title_(sweep.title.empty() ? "Sweep" : sweep.title), plan_(plan), folder_(folder) {}
 
   void write_if_due() {
-    if (Clock::now() >= next_) write();
+    if (Clock::now() >= next_) write(false);
   }
-  void write() {
+  void write(bool has_ended) {
     const Clock::time_point start = Clock::now();
-    write_atomically(folder_ / "status.html", status_page(sweep_status(plan_, folder_), title_));
+    write_atomically(folder_ / "status.html",
+                     status_page(sweep_status(plan_, folder_), title_, has_ended));
     const Clock::time_point end = Clock::now();
     next_ = end + std::max<Clock::duration>(kPeriod, kMostLoad * (end - start));
   }
@@ -297,6 +302,7 @@ SweepSummary run_sweep(const SweepConfig& sweep, const fs::path& folder, Launche
   write_atomically(folder / "sweep.yaml", config::print(sweep));
   remove_half_written(folder / "runs");
   if (sweep.generate) check_generated(plan.simulations);
+  mark_held(folder, {});
   StatusPage page(sweep, plan, folder);
   const auto on_wait = [&] { page.write_if_due(); };
   bool complete = true;
@@ -311,7 +317,7 @@ SweepSummary run_sweep(const SweepConfig& sweep, const fs::path& folder, Launche
                                  "simulating", on_wait);
     }
   } while (complete && quota && quota->release_next());
-  if (quota && !quota->message().empty()) show_notice(quota->message());
+  if (complete && quota && !quota->message().empty()) show_notice(quota->message());
   std::optional<Halving> halving;
   if (sweep.halving) halving.emplace(*sweep.halving, sweep.reference, plan.runs);
   do {
@@ -329,7 +335,8 @@ SweepSummary run_sweep(const SweepConfig& sweep, const fs::path& folder, Launche
                        halving ? count(plan, JobState::kHeld) : 0,
                        0,
                        !complete};
-  page.write();
+  if (complete) mark_held(folder, plan);
+  page.write(true);
   if (sweep.generate) write_manifest(sweep, plan, folder);
   if (complete && (!sweep.generate || !plan.runs.empty()))
     summary.missed = write_sweep_results(sweep, plan, stopped, folder);
@@ -373,6 +380,7 @@ std::string describe_sweep(const SweepConfig& sweep, const fs::path& folder) {
         text += "  " + command_text(command) + "\n";
     }
   const std::size_t all = plan.simulations.size() + plan.runs.size();
+  if (sweep.halving) text += "halving will stop rows: not all of these are run\n";
   return text + fmt::format("{} jobs: {} to run, {} done already\n", all, due, all - due);
 }
 

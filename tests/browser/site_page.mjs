@@ -49,6 +49,7 @@ async function checkCharts(browser, name, boxes) {
   assert.ok(await waitFor(browser, `[...document.querySelectorAll(${JSON.stringify(boxes)})].filter((box) => box.offsetParent).some((box) => box.dataset.drawn === "yes")`), `${name} draws nothing`);
   await keepPicture(browser, name);
   await browser.resize(360, 740);
+  await waitFor(browser, "document.documentElement.scrollWidth <= 360");  // charts follow a moment later
   const wide = await browser.evaluate(kTooWide(360));
   assert.ok(wide[0] <= 360, `on a phone ${name} is ${wide[0]} px wide: ${wide[1].slice(0, 3)}`);
   await browser.resize(1280, 900);

@@ -92,6 +92,12 @@ TEST(SweepAtScale, TakesWhatAnotherFolderHasDone) {
   EXPECT_EQ(result.exit_code, 0) << result.output;
   EXPECT_THAT(result.output, AllOf(HasSubstr("not taken: walls_fast_seed-1: the command differs"),
                                    HasSubstr("1 jobs taken")));
+  // A folder is no source of itself.
+  fs::remove(a + "/jobs/walls/job.yaml");
+  EXPECT_EQ(saccade({"sweep", one, "-o", a, "--merge", a}).exit_code, 0);
+  EXPECT_TRUE(fs::exists(a + "/data/walls/dataset.yaml"));
+  EXPECT_NE(saccade({"sweep", one, "-o", a, "--merge", b, "--dry-run"}).exit_code, 0);
+  EXPECT_NE(saccade({"sweep", one, "-o", a, "--follow"}).exit_code, 0);
   EXPECT_EQ(
       saccade({"sweep", one, "-o", a, "--merge", std::string(folder.path() / "none")}).exit_code,
       2);
@@ -120,6 +126,11 @@ TEST(SweepAtScale, PacksBySplitAndShardAndCleansUp) {
   EXPECT_EQ(read_file(packed + "/train-00.tar"), bytes);
 
   std::ofstream(out + "/data/notes.txt") << "mine";
+  // Other shards: the datasets move, and their records stay.
+  fs::create_directories(out + "/data/dataset-000001");
+  std::ofstream(out + "/data/dataset-000001/dataset.yaml") << "stale: 1\n";
+  EXPECT_THAT(saccade_ok({"sweep", sweep, "-o", out, "--clean"}), HasSubstr("1 datasets removed"));
+  EXPECT_TRUE(fs::exists(out + "/jobs/dataset-000001/job.yaml"));
   const std::string fewer = write_small_generation(folder, 4);
   EXPECT_THAT(saccade_ok({"sweep", fewer, "-o", out, "--clean"}), HasSubstr("2 datasets removed"));
   EXPECT_TRUE(fs::exists(out + "/data/notes.txt"));
@@ -134,7 +145,7 @@ TEST(SweepAtScale, KeepsGeneratedDatasetsToTheirQuota) {
   const CommandResult result =
       saccade({"sweep", sweep, "-o", out, "--set", "generate.disk_gb=0.000001"});
   EXPECT_EQ(result.exit_code, 0) << result.output;
-  EXPECT_THAT(result.output, HasSubstr("8 of 30 datasets were made"));
+  EXPECT_THAT(result.output, HasSubstr("2 datasets take "));
   const CsvColumns csv(fs::path(out) / "manifest.csv");
   EXPECT_EQ(csv.text(29, csv.require("status")), "waiting");
 }
@@ -206,7 +217,7 @@ TEST(SweepAtScale, ResultsBecomeAnExperimentOfMlflow) {
               "-o", out});
   EXPECT_THAT(saccade_ok({"results", out, "--format", "mlflow", "-o", store}),
               HasSubstr("wrote 1 run to"));
-  EXPECT_TRUE(fs::exists(store + "/1/meta.yaml"));
+  EXPECT_TRUE(fs::exists(store + "/530871943702615348/meta.yaml"));
   EXPECT_EQ(saccade({"results", out, "--format", "mlflow"}).exit_code, 2);
   EXPECT_EQ(saccade({"results", out, "-o", store}).exit_code, 2);
 }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <string>
 #include <string_view>
@@ -51,39 +52,40 @@ void check(cairo_status_t status) {
     throw InputError("figure", std::string("cannot be drawn: ") + cairo_status_to_string(status));
 }
 
-}  // namespace
+struct DestroySurface {
+  void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
+};
+using Surface = std::unique_ptr<cairo_surface_t, DestroySurface>;
 
-void VectorDrawing::DestroyContext::operator()(_cairo* context) const { cairo_destroy(context); }
-void VectorDrawing::DestroySurface::operator()(_cairo_surface* surface) const {
-  cairo_surface_destroy(surface);
-}
-
-VectorDrawing::VectorDrawing()
-    : surface_(cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, nullptr)),
-      context_(cairo_create(surface_.get())) {
-  cairo_select_font_face(context_.get(), "sans-serif", CAIRO_FONT_SLANT_NORMAL,
-                         CAIRO_FONT_WEIGHT_NORMAL);
+void set_up(cairo_t* context) {
+  cairo_select_font_face(context, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
   cairo_font_options_t* options = cairo_font_options_create();
   // Widths that do not depend on the size: the same letters for every magnification.
   cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
   cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
-  cairo_set_font_options(context_.get(), options);
+  cairo_set_font_options(context, options);
   cairo_font_options_destroy(options);
-  cairo_set_line_cap(context_.get(), CAIRO_LINE_CAP_ROUND);
-  cairo_set_line_join(context_.get(), CAIRO_LINE_JOIN_ROUND);
-  cairo_set_font_size(context_.get(), kMeasuredSize);
+  cairo_set_line_cap(context, CAIRO_LINE_CAP_ROUND);
+  cairo_set_line_join(context, CAIRO_LINE_JOIN_ROUND);
+}
+
+void set_colour(cairo_t* context, const Rgb8& colour) {
+  cairo_set_source_rgb(context, colour[0] / 255.0, colour[1] / 255.0, colour[2] / 255.0);
+}
+
+}  // namespace
+
+void VectorDrawing::DestroyContext::operator()(_cairo* context) const { cairo_destroy(context); }
+
+VectorDrawing::VectorDrawing() {
+  const Surface nowhere(cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1));
+  letters_.reset(cairo_create(nowhere.get()));
+  set_up(letters_.get());
+  cairo_set_font_size(letters_.get(), kMeasuredSize);
   cairo_text_extents_t extents;
-  cairo_text_extents(context_.get(), "H", &extents);
-  check(cairo_status(context_.get()));
+  cairo_text_extents(letters_.get(), "H", &extents);
+  check(cairo_status(letters_.get()));
   if (extents.height > 0) capital_height_ = extents.height / kMeasuredSize;
-}
-
-void VectorDrawing::set_font(double height) const {
-  cairo_set_font_size(context_.get(), height / capital_height_);
-}
-
-void VectorDrawing::set_colour(const Rgb8& colour) {
-  cairo_set_source_rgb(context_.get(), colour[0] / 255.0, colour[1] / 255.0, colour[2] / 255.0);
 }
 
 void VectorDrawing::line(const Eigen::Vector2d& from, const Eigen::Vector2d& to, const Rgb8& colour,
@@ -94,64 +96,69 @@ void VectorDrawing::line(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
 
 void VectorDrawing::polyline(std::span<const Eigen::Vector2d> points, const Rgb8& colour,
                              int thickness) {
-  bool has_point = false;
-  for (const Eigen::Vector2d& point : points) {
-    if (!point.allFinite()) continue;
-    if (has_point)
-      cairo_line_to(context_.get(), point.x(), point.y());
-    else
-      cairo_move_to(context_.get(), point.x(), point.y());
-    has_point = true;
-  }
-  set_colour(colour);
-  cairo_set_line_width(context_.get(), thickness);
-  cairo_stroke(context_.get());
+  std::vector<Eigen::Vector2d> finite;
+  for (const Eigen::Vector2d& point : points)
+    if (point.allFinite()) finite.push_back(point);
+  strokes_.emplace_back([finite, colour, thickness](cairo_t* context) {
+    for (const Eigen::Vector2d& point : finite) cairo_line_to(context, point.x(), point.y());
+    set_colour(context, colour);
+    cairo_set_line_width(context, thickness);
+    cairo_stroke(context);
+  });
 }
 
 void VectorDrawing::disc(const Eigen::Vector2d& centre, double radius, const Rgb8& colour) {
   if (!centre.allFinite()) return;
-  set_colour(colour);
-  cairo_arc(context_.get(), centre.x(), centre.y(), radius, 0, 2 * std::numbers::pi);
-  cairo_fill(context_.get());
+  strokes_.emplace_back([centre, radius, colour](cairo_t* context) {
+    set_colour(context, colour);
+    cairo_arc(context, centre.x(), centre.y(), radius, 0, 2 * std::numbers::pi);
+    cairo_fill(context);
+  });
 }
 
 void VectorDrawing::rectangle(const Eigen::Vector2d& top_left, const Eigen::Vector2d& size,
                               const Rgb8& colour) {
-  set_colour(colour);
-  cairo_rectangle(context_.get(), top_left.x(), top_left.y(), size.x(), size.y());
-  cairo_fill(context_.get());
+  strokes_.emplace_back([top_left, size, colour](cairo_t* context) {
+    set_colour(context, colour);
+    cairo_rectangle(context, top_left.x(), top_left.y(), size.x(), size.y());
+    cairo_fill(context);
+  });
 }
 
 void VectorDrawing::text(const std::string& text, const Eigen::Vector2d& baseline_left,
                          const Rgb8& colour, double height) {
-  set_colour(colour);
-  set_font(height);
-  cairo_move_to(context_.get(), baseline_left.x(), baseline_left.y());
-  cairo_show_text(context_.get(), text.c_str());
+  strokes_.emplace_back(
+      [text, baseline_left, colour, size = height / capital_height_](cairo_t* context) {
+        set_colour(context, colour);
+        cairo_set_font_size(context, size);
+        cairo_move_to(context, baseline_left.x(), baseline_left.y());
+        cairo_show_text(context, text.c_str());
+        cairo_new_path(context);
+      });
 }
 
 double VectorDrawing::extent_of(const std::string& text, double height) const {
-  set_font(height);
+  cairo_set_font_size(letters_.get(), height / capital_height_);
   cairo_text_extents_t extents;
-  cairo_text_extents(context_.get(), text.c_str(), &extents);
+  cairo_text_extents(letters_.get(), text.c_str(), &extents);
   return extents.x_advance;
 }
 
 void VectorDrawing::save(const std::filesystem::path& file, int width, int height) const {
   const bool is_pdf = file.extension() == ".pdf";
   SACCADE_CHECK(is_pdf || file.extension() == ".svg");
-  check(cairo_status(context_.get()));
   const double width_pt = width * kPointsPerPixel, height_pt = height * kPointsPerPixel;
   std::string bytes;
-  const std::unique_ptr<_cairo_surface, DestroySurface> page(
+  const Surface page(
       is_pdf ? cairo_pdf_surface_create_for_stream(append, &bytes, width_pt, height_pt)
              : cairo_svg_surface_create_for_stream(append, &bytes, width_pt, height_pt));
   if (is_pdf) cairo_pdf_surface_set_metadata(page.get(), CAIRO_PDF_METADATA_CREATE_DATE, kDate);
   {
+    // Drawn anew for each file: cairo 1.16 plays its own recordings with an offset that varies.
     const std::unique_ptr<_cairo, DestroyContext> onto(cairo_create(page.get()));
+    set_up(onto.get());
     cairo_scale(onto.get(), kPointsPerPixel, kPointsPerPixel);
-    cairo_set_source_surface(onto.get(), surface_.get(), 0, 0);
-    cairo_paint(onto.get());
+    for (const auto& stroke : strokes_) stroke(onto.get());
     check(cairo_status(onto.get()));
   }
   cairo_surface_finish(page.get());

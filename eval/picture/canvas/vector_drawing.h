@@ -1,12 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <vector>
 
 #include "eval/picture/canvas/drawing.h"
 
-struct _cairo;          // cairo's state of a drawing
-struct _cairo_surface;  // and what it draws on
+struct _cairo;  // cairo's state of a drawing
 
 namespace saccade {
 
@@ -38,16 +39,10 @@ class VectorDrawing final : public Drawing {
   struct DestroyContext {
     void operator()(_cairo* context) const;
   };
-  struct DestroySurface {
-    void operator()(_cairo_surface* surface) const;
-  };
 
-  void set_font(double height) const;
-  void set_colour(const Rgb8& colour);
-
-  std::unique_ptr<_cairo_surface, DestroySurface> surface_;
-  std::unique_ptr<_cairo, DestroyContext> context_;
-  double capital_height_ = 1;  ///< of the font at size 1
+  std::unique_ptr<_cairo, DestroyContext> letters_;  ///< measures them, and draws nothing
+  double capital_height_ = 1;                        ///< of the font at size 1
+  std::vector<std::function<void(_cairo*)>> strokes_;
 };
 
 }  // namespace saccade

@@ -26,6 +26,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Lies in every site: in no other folder are pages replaced or removed.
+constexpr const char* kMarker = "saccade_site.json";
 /// From the page of a report, and from that of a run.
 constexpr const char* kFromReport = "../../assets";
 constexpr const char* kFromRun = "../../../assets";
@@ -34,10 +36,11 @@ constexpr const char* kFromRun = "../../../assets";
 void check_site(const fs::path& site) {
   if (!fs::exists(site)) return;
   if (!fs::is_directory(site)) throw InputError(site.string(), "is not a folder (--publish)");
-  if (!fs::is_empty(site) && !fs::exists(site / "reports"))
+  if (!fs::is_empty(site) && !fs::exists(site / kMarker))
     throw InputError(site.string(),
-                     "is not empty and no site of reports (no folder reports in it); choose "
-                     "another folder (--publish)");
+                     fmt::format("is not empty and no site of reports (no {} in it); choose "
+                                 "another folder (--publish)",
+                                 kMarker));
 }
 
 std::string run_page(const RunData& data, const std::string& title, const RunSectionParts& parts) {
@@ -129,6 +132,9 @@ fs::path publish_report(std::span<const fs::path> run_folders, const fs::path& s
   const fs::path folder = site / "reports" / report.name;
   fs::create_directories(site / "reports");
   const FileLock lock = FileLock::wait_for(site / "reports" / ".lock");
+  // One that cannot be read is said before anything is written.
+  static_cast<void>(read_published_reports(site));
+  write_atomically(site / kMarker, "{\"format_version\": 1}\n");
   for (const PageAsset& asset : page_assets())
     write_atomically(site / "assets" / asset.name, asset.text);
   write_report_folder(content, report, options, folder);

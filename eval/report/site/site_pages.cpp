@@ -10,6 +10,7 @@
 #include <set>
 #include <vector>
 
+#include "core/io/files/sha256.h"
 #include "eval/metrics/catalogue.h"
 #include "eval/report/html.h"
 #include "eval/report/page.h"
@@ -282,15 +283,19 @@ std::string section(const char* id, const char* heading, const std::string& html
 }  // namespace
 
 std::map<std::string, std::string> method_files(std::span<const PublishedReport> reports) {
+  constexpr std::size_t kHashDigits = 6;
   std::map<std::string, std::string> files;
-  std::set<std::string> taken;
   for (const auto& [method, summary] : methods_of(reports)) {
     std::string stem;
-    for (const char c : method)
-      stem += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' ? c : '-';
-    std::string name = stem;
-    for (int next = 2; !taken.insert(name).second; ++next) name = fmt::format("{}-{}", stem, next);
-    files[method] = name + ".html";
+    bool is_plain = true;
+    for (const char c : method) {
+      const bool keeps = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+      stem += keeps ? c : '-';
+      is_plain = is_plain && (keeps || c == ' ');
+    }
+    // Its address must not depend on what else there is: "a+b" and "a b" would be one page.
+    if (!is_plain) stem += "-" + sha256(std::as_bytes(std::span(method))).substr(0, kHashDigits);
+    files[method] = stem + ".html";
   }
   return files;
 }

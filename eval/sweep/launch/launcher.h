@@ -67,6 +67,8 @@ class Launcher {
   /// The number of jobs of `threads` >= 0 threads (0: a whole machine) that run in parallel by
   /// default.
   [[nodiscard]] virtual int default_parallel_jobs(int threads) const = 0;
+  /// What the results depend on besides the program here, as a container; empty: nothing.
+  [[nodiscard]] virtual std::string environment() const { return {}; }
   /// Whether it wants to know LaunchJob::cost, so that one job of each kind is to run before the
   /// others.
   [[nodiscard]] virtual bool wants_costs() const { return false; }

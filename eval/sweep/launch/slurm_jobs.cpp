@@ -132,6 +132,7 @@ SlurmRequest SlurmJobs::request_of(std::size_t index) const {
   SlurmRequest request = options_.slurm.request;
   if (const std::optional<LaunchJob::Cost>& cost = launches_[index].cost)
     request = request_like(cost->wall_s, cost->memory_mb);
+  if (!request.memory_mb) request.memory_mb = options_.slurm.request.memory_mb;
   for (int factor = jobs_[index].request_factor; factor > 1; factor /= 2)
     request = request.doubled();
   return request;

@@ -45,6 +45,14 @@ class PeriodicWork {
 
 int SlurmLauncher::default_parallel_jobs(int /*threads*/) const { return LaunchLimits::kUnlimited; }
 
+std::string SlurmLauncher::environment() const {
+  const fs::path& image = options_.slurm.container;
+  if (image.empty()) return {};
+  std::error_code ignored;
+  return fmt::format("{}, {} bytes of {}", image.filename().string(), fs::file_size(image, ignored),
+                     fs::last_write_time(image, ignored).time_since_epoch().count());
+}
+
 bool SlurmLauncher::run(std::span<const LaunchJob> jobs, const LaunchLimits& limits,
                         const LaunchCallbacks& callbacks) {
   SACCADE_CHECK(limits.parallel_jobs >= 1);

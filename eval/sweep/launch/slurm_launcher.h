@@ -24,6 +24,7 @@ class SlurmLauncher : public Launcher {
                          const LaunchCallbacks& callbacks) override;
   /// Unlimited: Slurm decides.
   [[nodiscard]] int default_parallel_jobs(int threads) const override;
+  [[nodiscard]] std::string environment() const override;
   [[nodiscard]] bool wants_costs() const override { return options_.slurm.pilot; }
 
  private:

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kBytesPerGb = 1e9;
 /// Before the mean of the datasets is known.
-constexpr std::size_t kFirstDatasets = 8;
+constexpr std::size_t kFirstDatasets = 2;
 /// Datasets differ: so much more than the mean is reserved for each.
 constexpr double kReserve = 1.2;
 
@@ -23,7 +23,6 @@ DiskQuota::DiskQuota(double disk_gb, std::vector<SweepJob>& simulations)
 }
 
 bool DiskQuota::release_next() {
-  if (released_ == simulations_.size()) return false;
   std::size_t more = kFirstDatasets;
   if (released_ > 0) {
     used_ = 0;
@@ -48,11 +47,15 @@ bool DiskQuota::release_next() {
 }
 
 std::string DiskQuota::message() const {
-  if (released_ == simulations_.size()) return "";
+  const double used_gb = static_cast<double>(used_) / kBytesPerGb;
+  if (used_gb > disk_gb_)
+    return fmt::format("generate.disk_gb: {} datasets take {:.3g} GB, more than the {:g} GB",
+                       released_, used_gb, disk_gb_);
+  if (released_ == simulations_.size() || used_ == 0) return "";
   return fmt::format(
       "generate.disk_gb: {} of {} datasets were made and take {:.2f} GB; the next would not fit "
       "into {:g} GB with certainty",
-      released_, simulations_.size(), static_cast<double>(used_) / kBytesPerGb, disk_gb_);
+      released_, simulations_.size(), used_gb, disk_gb_);
 }
 
 std::uintmax_t bytes_below(const std::filesystem::path& folder) {

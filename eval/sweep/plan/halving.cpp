@@ -9,7 +9,9 @@
 #include <tuple>
 #include <utility>
 
+#include "core/config/suggest.h"
 #include "core/error.h"
+#include "core/io/run/run_record.h"
 #include "eval/evaluate.h"
 #include "eval/metrics/catalogue.h"
 
@@ -48,12 +50,28 @@ double loss_of(const SweepJob& run, const MetricInfo& metric) {
   constexpr double kWorst = std::numeric_limits<double>::infinity();
   if (run.state == JobState::kFailed) return kWorst;
   try {
+    // An external program that crashed has a time, but came to nothing.
+    const std::filesystem::path record = run.output / "run.yaml";
+    if (std::filesystem::exists(record) && !read_run_record(record).problem().empty())
+      return kWorst;
     const std::optional<double> value = speed_value(read_json_metrics(run.scores), metric.key);
     if (!value) return kWorst;
     return metric.higher_is_better() ? -*value : *value;
   } catch (const InputError&) {
     return kWorst;
   }
+}
+
+/// The scores of the first run that has any.
+std::vector<std::string> known_keys(const std::vector<SweepJob>& runs) {
+  std::vector<std::string> keys;
+  for (const SweepJob& run : runs) {
+    if (run.state == JobState::kHeld || !std::filesystem::exists(run.scores)) continue;
+    const Metrics metrics = read_json_metrics(run.scores);
+    for (const auto& [key, value] : metrics.values()) keys.push_back(key);
+    break;
+  }
+  return keys;
 }
 
 /// The rank of each value, from 1 on; equal ones share the mean of theirs.
@@ -86,6 +104,9 @@ void describe(config::Fields& fields, HalvingConfig& halving) {
           "keep", halving.keep,
           "Share of the rows that goes on after each round, which runs over twice as many pairs.")
       .range(0.05, 0.95);
+  fields.expect(!is_catalogued(halving.metric) ||
+                    metric_info(halving.metric).better != MetricInfo::Better::kNeither,
+                "metric", "is neither better when it is lower nor when it is higher");
 }
 
 Halving::Halving(const HalvingConfig& config, std::string reference, std::vector<SweepJob>& runs)
@@ -122,6 +143,7 @@ bool Halving::release_next() {
 std::vector<double> Halving::mean_ranks(const std::vector<const Row*>& rows) const {
   const MetricInfo metric = metric_info(config_.metric);
   std::vector<double> sums(rows.size()), counts(rows.size());
+  bool is_measured = false;
   for (std::size_t pair = 0; pair < released_; ++pair) {
     std::vector<std::size_t> present;
     std::vector<double> losses;
@@ -129,15 +151,21 @@ std::vector<double> Halving::mean_ranks(const std::vector<const Row*>& rows) con
       if (rows[i]->runs[pair] == kNone) continue;
       present.push_back(i);
       losses.push_back(loss_of(runs_[rows[i]->runs[pair]], metric));
+      is_measured = is_measured || std::isfinite(losses.back());
     }
     const std::vector<double> ranks = ranks_of(losses);
     for (std::size_t k = 0; k < present.size(); ++k) {
       // Where only some rows have the pair, the rank counts relative to their number.
-      sums[present[k]] += ranks[k] / static_cast<double>(present.size());
+      sums[present[k]] += (ranks[k] - 0.5) / static_cast<double>(present.size());
       counts[present[k]] += 1;
     }
   }
-  for (std::size_t i = 0; i < rows.size(); ++i) sums[i] /= std::max(1.0, counts[i]);
+  // Of a row without any pair so far nothing is known: it is in the middle.
+  for (std::size_t i = 0; i < rows.size(); ++i) sums[i] = counts[i] > 0 ? sums[i] / counts[i] : 0.5;
+  if (!is_measured)
+    throw InputError("halving.metric",
+                     "'" + config_.metric + "' is a score of no run so far; " +
+                         config::suggestion(config_.metric, known_keys(runs_), "metrics"));
   return sums;
 }
 

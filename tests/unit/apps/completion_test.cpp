@@ -44,7 +44,8 @@ TEST(CompletionOfWords, AnOption) {
 }
 
 TEST(CompletionOfWords, AChoiceOfAnOption) {
-  EXPECT_THAT(completed({"results", "--format", ""}), ElementsAre("table", "csv", "json"));
+  EXPECT_THAT(completed({"results", "--format", ""}),
+              ElementsAre("table", "csv", "json", "mlflow"));
   EXPECT_THAT(completed({"completion", "z"}), ElementsAre("zsh"));
 }
 

@@ -10,4 +10,4 @@ function settleNext(sections) {
 }
 
 /// Lays the sections out one by one once the page is open and the browser has nothing else to do.
-export const settle = () => addEventListener("load", () => whenIdle(() => settleNext([...document.querySelectorAll("main > section:not(:has(> .packed)), .run:not(:has(> .packed))")])));
+export const settle = () => addEventListener("load", () => whenIdle(() => settleNext([...document.querySelectorAll(".report > section:not(:has(> .packed)), .run:not(:has(> .packed))")])));

@@ -18,6 +18,8 @@ using testing::read_file;
 using testing::TemporaryFolder;
 using testing::write_stored_run;
 
+constexpr const char* kExperiment = "530871943702615348";
+
 class Mlflow : public ::testing::Test {
  protected:
   /// A store of a scored run and one without scores; the folders of the runs that were written.
@@ -29,7 +31,7 @@ class Mlflow : public ::testing::Test {
     ResultReader reader(result_store_beside(scored));
     runs_ = write_mlflow(reader, where, out());
     std::vector<fs::path> folders;
-    for (const fs::directory_entry& entry : fs::directory_iterator(out() / "1"))
+    for (const fs::directory_entry& entry : fs::directory_iterator(out() / kExperiment))
       if (entry.is_directory()) folders.push_back(entry.path());
     return folders;
   }
@@ -54,7 +56,7 @@ TEST_F(Mlflow, WritesParamsMetricsTagsAndTheConfiguration) {
   const config::Document meta = config::load(run / "meta.yaml");
   EXPECT_THAT(read_file(run / "meta.yaml"), HasSubstr("run_name: 'it''s a run'\n"));
   EXPECT_THAT(read_file(run / "meta.yaml"), HasSubstr("run_id: " + run.filename().string()));
-  EXPECT_THAT(read_file(out() / "1" / "meta.yaml"), HasSubstr("name: saccade\n"));
+  EXPECT_THAT(read_file(out() / kExperiment / "meta.yaml"), HasSubstr("name: saccade\n"));
 }
 
 TEST_F(Mlflow, ARunThatIsWrittenAgainReplacesItself) {

@@ -58,7 +58,7 @@ TEST_F(Status, IsToldFromFilesAlone) {
 }
 
 TEST_F(Status, AsAPageItIsLoadedAgainUntilTheEnd) {
-  const std::string page = status_page(sweep_status(sweep_, out()), sweep_.title);
+  const std::string page = status_page(sweep_status(sweep_, out()), sweep_.title, false);
   EXPECT_THAT(page, HasSubstr("http-equiv=\"refresh\""));
   EXPECT_THAT(page, HasSubstr("accurate: 0 of 2, 1 failed"));
   EXPECT_THAT(page, HasSubstr("jobs/recorded_accurate_seed-1/log.txt"));
@@ -67,8 +67,28 @@ TEST_F(Status, AsAPageItIsLoadedAgainUntilTheEnd) {
   EXPECT_THAT(testing::external_references(page), ::testing::IsEmpty());
   leave("recorded_fast_seed-2", "job.yaml", "");
   leave("recorded_accurate_seed-2", "job.yaml", "");
-  EXPECT_THAT(status_page(sweep_status(sweep_, out()), "Sweep"),
+  EXPECT_THAT(status_page(sweep_status(sweep_, out()), "Sweep", true),
               Not(HasSubstr("http-equiv=\"refresh\"")));
+}
+
+TEST_F(Status, KnowsWhatWasKilledAndWhatIsHeld) {
+  SweepPlan plan = plan_sweep(sweep_, out());
+  // Killed in the middle: its log says nothing of it.
+  SweepJob& killed = plan.runs[1];
+  killed.failure = "failed: killed by signal 9 (Killed)";
+  mark_failed(out(), killed);
+  plan.runs[3].state = JobState::kHeld;
+  mark_held(out(), plan);
+  const SweepStatus status = sweep_status(sweep_, out());
+  EXPECT_EQ(status.jobs.failed, 2U);
+  EXPECT_EQ(status.jobs.all(), 3U);
+  EXPECT_TRUE(status.has_ended());
+  EXPECT_THAT(status_text(status), HasSubstr("killed by signal 9"));
+  killed.failure.clear();
+  mark_failed(out(), killed);
+  mark_held(out(), {});
+  EXPECT_EQ(sweep_status(sweep_, out()).jobs.running, 1U);
+  EXPECT_EQ(sweep_status(sweep_, out()).jobs.waiting, 1U);
 }
 
 TEST_F(Status, OfAnotherFolderIsAnError) {

@@ -47,7 +47,7 @@ class Quota : public ::testing::Test {
 
 TEST_F(Quota, MakesWhatFits) {
   DiskQuota quota(50e3 / 1e9, jobs_);
-  EXPECT_EQ(make(1000), 8U);
+  EXPECT_EQ(make(1000), 2U);
   while (quota.release_next()) make(1000);
   EXPECT_GE(done(), 40U);
   EXPECT_LE(done(), 50U) << "not more than the space holds";
@@ -60,6 +60,13 @@ TEST_F(Quota, MakesAllWhereThereIsRoom) {
   while (quota.release_next());
   EXPECT_EQ(done(), 100U);
   EXPECT_EQ(quota.message(), "");
+}
+
+TEST_F(Quota, SaysWhereItTakesMore) {
+  DiskQuota quota(500 / 1e9, jobs_);
+  make(1000);
+  EXPECT_FALSE(quota.release_next());
+  EXPECT_THAT(quota.message(), HasSubstr("2 datasets take"));
 }
 
 TEST_F(Quota, EndsWhereNothingCanBeMade) {

@@ -87,6 +87,16 @@ TEST_F(HalvingOfASweep, ARunThatCameToNothingIsTheWorst) {
   EXPECT_THAT(finish(plan), ElementsAre("v1/2", "v2/2"));
 }
 
+TEST_F(HalvingOfASweep, AMetricThatNoRunHasIsAnErrorAndNotARanking) {
+  SweepPlan plan = this->plan(4);
+  HalvingConfig config = *sweep_.halving;
+  config.metric = "trajectory.dt_rel_percnt.mean";
+  Halving halving(config, "", plan.runs);
+  finish(plan);
+  EXPECT_THAT(error_of([&] { halving.release_next(); }),
+              HasSubstr("did you mean 'trajectory.dt_rel_percent.mean'"));
+}
+
 TEST_F(HalvingOfASweep, TwoRowsAreComparedToTheEnd) {
   SweepPlan plan = this->plan(2);
   Halving halving(*sweep_.halving, "", plan.runs);
