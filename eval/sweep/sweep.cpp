@@ -357,8 +357,9 @@ std::string estimate_generation(const SweepConfig& sweep, const fs::path& folder
   if (due.empty()) return text;
   text += "the first of them:\n  " + command_text(due.front()->commands.front()) + "\n";
   const std::unique_ptr<Launcher> here = make_launcher("local");
-  const int parallel_jobs = limits_of_simulations(sweep, jobs, *here).parallel_jobs;
-  return text + calibration_text(run_calibration(due, *here), due.size(), parallel_jobs);
+  const LaunchLimits limits = limits_of_simulations(sweep, jobs, *here);
+  return text +
+         calibration_text(run_calibration(due, limits, *here), due.size(), limits.parallel_jobs);
 }
 
 std::string describe_sweep(const SweepConfig& sweep, const fs::path& folder) {

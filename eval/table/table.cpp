@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <limits>
+#include <string_view>
+#include <utility>
 
 #include "core/check.h"
 #include "core/error.h"
@@ -34,6 +37,17 @@ std::string escape_latex(const std::string& text) {
     else
       result += c;
   }
+  // Of the text fonts these would be taken as bitmaps.
+  for (const auto& [sign, command] :
+       {std::pair<std::string_view, std::string_view>{"×", "$\\times$"},
+        {"σ", "$\\sigma$"},
+        {"±", "$\\pm$"},
+        {"−", "$-$"}})
+    for (auto at = result.find(sign); at != std::string::npos; at = result.find(sign, at))
+      result.replace(at, sign.size(), command);
+  // A hyphen before a number is a minus.
+  if (result.size() > 1 && result[0] == '-' && std::isdigit(static_cast<unsigned char>(result[1])))
+    result.replace(0, 1, "$-$");
   return result;
 }
 
@@ -64,7 +78,7 @@ std::string cell_latex(const Table::Cell& cell) {
   if (cell.text == "–") return "--";
   if (!cell.text.empty() || !cell.value)
     return cell.best ? "\\textbf{" + escape_latex(cell.text) + "}" : escape_latex(cell.text);
-  const std::string mean = rounded(cell.value->mean);
+  const std::string mean = escape_latex(rounded(cell.value->mean));
   const std::string interval = interval_text(*cell.value);
   return (cell.best ? "\\textbf{" + mean + "}" : mean) + (interval.empty() ? "" : " " + interval);
 }

@@ -18,12 +18,12 @@ struct Estimate {
 /// The cost of all datasets together, extrapolated from short simulations of a few of them.
 struct CalibrationRun {
   std::size_t datasets = 0;  ///< number of simulated datasets
-  double window_s = 0;       ///< simulated time of each; a second simulation lasts twice as long
+  double window_s = 0;       ///< simulated time of long ones; a second simulation lasts twice that
   double cost_s = 0;         ///< wall time of the calibration run itself
   double duration_s = 0;     ///< simulated time of all datasets together
   Estimate events;
   Estimate bytes;
-  Estimate core_s;  ///< wall time of all datasets, one at a time
+  Estimate core_s;  ///< wall times of all datasets, with as many at a time as in the generation
 };
 
 /// The mean of a sample times `count`, with its interval by Student's t. A sample of all datasets
@@ -35,12 +35,13 @@ struct CalibrationRun {
 /// a range beyond what the simulation accepts.
 void check_configurations(const std::vector<const SweepJob*>& jobs, Launcher& launcher);
 
-/// Simulates the beginning of up to eight of the jobs, evenly spaced, twice: over `window_s` and
-/// over twice that time. The cost of the whole is extrapolated linearly from the two. Runs through
-/// `launcher`, one job at a time, in a temporary folder. Throws InputError with the program's
-/// output where a simulation fails.
+/// Simulates some of the jobs, evenly spaced, eight after eight, until the time of all is known to a
+/// tenth or the calibration has taken a tenth of it (20 s at least): short ones as a whole, of others
+/// the beginning twice, over `window_s` and over twice that time, from which the whole is
+/// extrapolated linearly. Runs through `launcher` within `limits` in temporary folders. Throws
+/// InputError with the program's output where a simulation fails.
 [[nodiscard]] CalibrationRun run_calibration(const std::vector<const SweepJob*>& jobs,
-                                             Launcher& launcher);
+                                             const LaunchLimits& limits, Launcher& launcher);
 
 /// The estimated events, disk space and time of `count` datasets, for a person to read.
 [[nodiscard]] std::string calibration_text(const CalibrationRun& calibration, std::size_t count,

@@ -170,6 +170,23 @@ std::optional<double> relative_time(const Method& method, const Method& referenc
   return count == 0 ? std::nullopt : std::optional(std::exp(sum / static_cast<double>(count)));
 }
 
+/// Whether so few pairs can make no difference significant: the smallest p of the test of n pairs is
+/// 2 / 2^n, which Holm's procedure multiplies by the number of tests.
+bool is_hopeless(const std::vector<Comparison>& comparisons) {
+  std::size_t most = 0;
+  for (const Comparison& comparison : comparisons)
+    most = std::max(most, comparison.pairs.own.size());
+  return static_cast<double>(comparisons.size()) * std::pow(2.0, 1.0 - static_cast<double>(most)) >=
+         kAlpha;
+}
+
+/// Whether rows have means over different pairs, as where some were stopped early.
+bool has_different_counts(const std::vector<Method>& methods) {
+  return std::any_of(methods.begin(), methods.end(), [&](const Method& method) {
+    return method.rows.size() != methods.front().rows.size();
+  });
+}
+
 Table summary_table(const std::vector<Method>& methods, const Method& reference,
                     const std::vector<std::string>& metrics,
                     const std::vector<Comparison>& comparisons) {
@@ -184,6 +201,10 @@ Table summary_table(const std::vector<Method>& methods, const Method& reference,
     best.push_back(clear_best(methods, metric));
   }
   table.columns.push_back({"time [×]", true});
+  const bool shows_pairs = has_different_counts(methods);
+  if (shows_pairs) table.columns.push_back({"pairs", true});
+  if (is_hopeless(comparisons))
+    table.caption += "; with so few pairs no difference can be significant";
   for (const Method& method : methods) {
     std::vector<Table::Cell> row{{method.name}};
     for (std::size_t i = 0; i < metrics.size(); ++i) {
@@ -198,6 +219,8 @@ Table summary_table(const std::vector<Method>& methods, const Method& reference,
     }
     const std::optional<double> time = relative_time(method, reference);
     row.push_back(number_cell(time, fixed(time, 2)));
+    const auto pairs = static_cast<double>(method.rows.size());
+    if (shows_pairs) row.push_back(number_cell(pairs, grouped(pairs)));
     table.rows.push_back(std::move(row));
   }
   return table;

@@ -86,3 +86,6 @@ TEST(VectorDrawing, NamesTheFileThatItCannotWrite) {
 
 }  // namespace
 }  // namespace saccade
+
+/// LeakSanitizer: fontconfig keeps the fonts that a program has asked for until its end.
+extern "C" const char* __lsan_default_suppressions() { return "leak:libfontconfig"; }
