@@ -12,6 +12,7 @@
 #include "core/config/config.h"
 #include "core/error.h"
 #include "core/io/files/folder_name.h"
+#include "core/io/run/run_record.h"
 #include "core/median.h"
 #include "core/process/child_process.h"
 #include "core/process/progress.h"
@@ -50,6 +51,8 @@ std::optional<double> measured_s(const SweepPlan& plan, const std::string& confi
   std::vector<double> times;
   for (const SweepJob& run : plan.runs) {
     if (run.point.configuration != configuration || !fs::exists(run.scores)) continue;
+    // What crashed took a time, too, but not that of its work.
+    if (!read_run_record(run.output / "run.yaml").problem().empty()) continue;
     const std::optional<double> factor =
         read_json_metrics(run.scores).get("speed.realtime_factor.median");
     if (factor && *factor > 0) times.push_back(1 / *factor);
