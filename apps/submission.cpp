@@ -1,7 +1,6 @@
 #include "apps/submission.h"
 
 #include <fmt/format.h>
-#include <poll.h>
 
 #include <algorithm>
 #include <optional>
@@ -14,7 +13,6 @@
 #include "core/io/files/folder_name.h"
 #include "core/io/run/run_record.h"
 #include "core/median.h"
-#include "core/process/child_process.h"
 #include "core/process/progress.h"
 #include "core/process/shell.h"
 #include "estimator/external/adapter_config.h"

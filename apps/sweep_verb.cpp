@@ -102,8 +102,9 @@ void merge(const SweepConfig& config, const SweepVerbOptions& options) {
     fmt::print(stderr, "not taken: {}: {}\n", summary.refused[i].first, summary.refused[i].second);
   if (summary.refused.size() > kShown)
     fmt::print(stderr, "and {} more were not taken\n", summary.refused.size() - kShown);
-  fmt::print("{}: {} jobs taken, {} were there\n", options.output.string(), summary.taken,
-             summary.there);
+  if (!options.quiet)
+    fmt::print("{}: {} jobs taken, {} were there\n", options.output.string(), summary.taken,
+               summary.there);
 }
 
 void sweep(SweepVerbOptions options) {

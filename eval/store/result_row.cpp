@@ -19,14 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "0.1.0 (1234567890ab)" taken apart.
-void set_version(const std::string& tool_version, ResultRow& row) {
-  const std::size_t open = tool_version.find(" (");
-  row.version = tool_version.substr(0, open);
-  if (open == std::string::npos || !tool_version.ends_with(')')) return;
-  row.commit = tool_version.substr(open + 2, tool_version.size() - open - 3);
-}
-
 Metrics scores_or_speed(const fs::path& folder) {
   if (fs::exists(folder / "metrics.json")) return read_json_metrics(folder / "metrics.json");
   Metrics speed;
@@ -52,6 +44,11 @@ CsvTable::Cell ResultColumn::of(const ResultRow& row) const {
       return value;
   };
   return std::visit(cell, member);
+}
+
+std::string utc_now() {
+  const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now));
 }
 
 std::span<const ResultColumn> result_columns() {
@@ -92,10 +89,10 @@ ResultRow read_result(const fs::path& run_folder) {
   row.threads = record.threads;
   if (record.window) row.start_s = record.window->start_s;
   if (record.window) row.end_s = record.window->end_s;
-  set_version(record.tool_version, row);
+  row.version = record.version();
+  row.commit = record.commit();
   row.machine = record.machine;
-  const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  row.added = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now));
+  row.added = utc_now();
   row.command = record.command;
   row.dataset_path = record.dataset.string();
   row.dataset_sha256 = record.dataset_sha256;

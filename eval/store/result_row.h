@@ -51,6 +51,9 @@ struct ResultColumn {
 /// All but the id and the metrics, in the order of the struct.
 [[nodiscard]] std::span<const ResultColumn> result_columns();
 
+/// This moment as "2026-01-31T12:00:00Z".
+[[nodiscard]] std::string utc_now();
+
 /// Reads run.yaml, metrics.json and timing.json of a run folder; the latter two may be missing.
 /// InputError where it is no run folder or one of them is malformed.
 [[nodiscard]] ResultRow read_result(const std::filesystem::path& run_folder);

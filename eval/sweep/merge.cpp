@@ -1,6 +1,5 @@
 #include "eval/sweep/merge.h"
 
-#include <map>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -46,11 +45,10 @@ class Merger {
  public:
   Merger(const fs::path& folder, MergeSummary& summary) : folder_(folder), summary_(summary) {}
 
-  /// Whether the job is done here afterwards.
-  bool take(const SweepJob& job, std::span<const fs::path> others) {
+  void take(const SweepJob& job, std::span<const fs::path> others) {
     if (why_to_run(job, record_in(folder_, job), inputs_of(job)).empty()) {
       ++summary_.there;
-      return true;
+      return;
     }
     std::string reason;
     for (const fs::path& other : others) {
@@ -58,11 +56,10 @@ class Merger {
       reason = take_from(other, job);
       if (reason.empty()) {
         ++summary_.taken;
-        return true;
+        return;
       }
     }
     if (!reason.empty()) summary_.refused.emplace_back(job.name, reason);
-    return false;
   }
 
  private:

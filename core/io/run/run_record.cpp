@@ -70,6 +70,14 @@ std::string RunRecord::problem() const {
   return external->status + ": " + external->reason;
 }
 
+std::string RunRecord::version() const { return tool_version.substr(0, tool_version.find(" (")); }
+
+std::string RunRecord::commit() const {
+  const std::size_t open = tool_version.find(" (");
+  if (open == std::string::npos || !tool_version.ends_with(')')) return {};
+  return tool_version.substr(open + 2, tool_version.size() - open - 3);
+}
+
 RunRecord read_run_record(const std::filesystem::path& file) {
   return config::read<RunRecord>(config::load(file));
 }

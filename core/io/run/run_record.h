@@ -55,6 +55,10 @@ struct RunRecord {
 
   /// What is to be said of a run that came to nothing, "timed out: ..."; empty where all is well.
   [[nodiscard]] std::string problem() const;
+  /// Of tool_version what stands before the brackets and in them: "0.1.0" and "1234567890ab", which
+  /// is empty where there are none.
+  [[nodiscard]] std::string version() const;
+  [[nodiscard]] std::string commit() const;
 };
 
 void describe(config::Fields& fields, RunRecord& record);

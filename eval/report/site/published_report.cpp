@@ -1,11 +1,7 @@
 #include "eval/report/site/published_report.h"
 
-#include <fmt/chrono.h>
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cctype>
-#include <chrono>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -20,6 +16,7 @@
 #include "core/version.h"
 #include "eval/evaluate.h"
 #include "eval/metrics/catalogue.h"
+#include "eval/store/result_row.h"
 
 namespace saccade {
 namespace {
@@ -47,13 +44,6 @@ std::string short_hash_of(const std::string& text) {
   return sha256(std::as_bytes(std::span(text))).substr(0, kHashDigits);
 }
 
-/// Of "0.1.0 (1234567890ab)" what stands in brackets.
-std::string commit_of(const std::string& tool_version) {
-  const std::size_t open = tool_version.find(" (");
-  if (open == std::string::npos || !tool_version.ends_with(')')) return tool_version;
-  return tool_version.substr(open + 2, tool_version.size() - open - 3);
-}
-
 std::map<std::string, double> scores_of(const Metrics& metrics) {
   std::map<std::string, double> scores;
   for (const MetricInfo& metric : metric_catalogue()) {
@@ -62,11 +52,6 @@ std::map<std::string, double> scores_of(const Metrics& metrics) {
     if (value) scores[metric.key] = *value;
   }
   return scores;
-}
-
-std::string now_utc() {
-  const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now));
 }
 
 Json run_json(const PublishedRun& run) {
@@ -92,7 +77,7 @@ PublishedRun run_of(const Json& json) {
 }  // namespace
 
 PublishedReport published_report(const std::vector<RunData>& runs, const std::string& title) {
-  PublishedReport report{"", title, now_utc(), std::string(saccade::version()), {}};
+  PublishedReport report{"", title, utc_now(), std::string(saccade::version()), {}};
   std::string identity = title + "\n";
   for (const RunData& data : runs) {
     const RunRecord& record = data.run.record;
@@ -101,12 +86,11 @@ PublishedReport published_report(const std::vector<RunData>& runs, const std::st
                            .method = data.method,
                            .module = record.module,
                            .dataset = data.dataset,
-                           .commit = commit_of(record.tool_version),
+                           .commit = record.commit().empty() ? record.version() : record.commit(),
                            .seed = record.seed,
                            .problem = record.problem(),
                            .scores = scores_of(data.metrics)});
-    identity += fs::weakly_canonical(data.run.folder).string() + "\n" +
-                sha256_of_file(data.run.folder / "run.yaml") + "\n";
+    identity += data.run.name() + "\n" + sha256_of_file(data.run.folder / "run.yaml") + "\n";
   }
   report.name = address_part(title) + "-" + short_hash_of(identity);
   return report;

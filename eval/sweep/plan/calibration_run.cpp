@@ -18,6 +18,7 @@
 #include "core/error.h"
 #include "core/io/dataset/dataset_record.h"
 #include "core/io/files/scratch_folder.h"
+#include "core/process/progress.h"
 #include "core/stopwatch.h"
 #include "eval/metrics/statistics.h"
 #include "eval/table/number_text.h"
@@ -34,10 +35,11 @@ constexpr double kWindowS = 0.025;
 /// A shorter dataset is simulated as a whole: its beginnings would cost as much.
 constexpr double kShortS = 4 * kWindowS;
 /// The calibration goes on until the time is known to this share, and ends in any case when it has
-/// taken the other share of what it has estimated: datasets differ by factors, so that eight of them
-/// say little, and for a long generation a better estimate is worth more time.
+/// taken the other share of what it has estimated, at least 20 s and at most five minutes: datasets
+/// differ by factors, so that eight of them say little, and for a long generation a better estimate
+/// is worth more time, but nobody waits an hour for one.
 constexpr double kGoodShare = 0.1, kMostShare = 0.1;
-constexpr double kLeastCostS = 20;
+constexpr double kLeastCostS = 20, kMostCostS = 300;
 
 std::string text_of(const fs::path& file) {
   std::ifstream stream(file);
@@ -243,7 +245,10 @@ CalibrationRun run_calibration(const std::vector<const SweepJob*>& jobs, const L
            scaled_estimate(sample.core_s, jobs.size())};
     const double whole_s = run.core_s.value / limits.parallel_jobs;
     if (run.core_s.spread <= kGoodShare * run.core_s.value) break;
-    if (run.cost_s >= std::max(kLeastCostS, kMostShare * whole_s)) break;
+    if (run.cost_s >= std::clamp(kMostShare * whole_s, kLeastCostS, kMostCostS)) break;
+    show_notice(fmt::format("calibrating: {} datasets in {:.0f} s; the time is known to {:.0f} %",
+                            run.datasets, run.cost_s,
+                            100 * run.core_s.spread / std::max(run.core_s.value, 1e-9)));
   }
   return run;
 }

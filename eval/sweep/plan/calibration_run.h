@@ -36,10 +36,11 @@ struct CalibrationRun {
 void check_configurations(const std::vector<const SweepJob*>& jobs, Launcher& launcher);
 
 /// Simulates some of the jobs, evenly spaced, eight after eight, until the time of all is known to a
-/// tenth or the calibration has taken a tenth of it (20 s at least): short ones as a whole, of others
-/// the beginning twice, over `window_s` and over twice that time, from which the whole is
-/// extrapolated linearly. Runs through `launcher` within `limits` in temporary folders. Throws
-/// InputError with the program's output where a simulation fails.
+/// tenth or the calibration has taken a tenth of it, 20 s at least and five minutes at most: short
+/// ones as a whole, of others the beginning twice, over `window_s` and over twice that time, from
+/// which the whole is extrapolated linearly. Runs through `launcher` within `limits` in temporary
+/// folders; a line on stderr says how far it is. Throws InputError with the program's output where a
+/// simulation fails.
 [[nodiscard]] CalibrationRun run_calibration(const std::vector<const SweepJob*>& jobs,
                                              const LaunchLimits& limits, Launcher& launcher);
 
