@@ -4,6 +4,7 @@
 
 #include "core/check.h"
 #include "core/config/document.h"
+#include "core/config/shipped.h"
 #include "core/config/suggest.h"
 #include "core/config/yaml_emit.h"
 #include "core/error.h"
@@ -56,6 +57,24 @@ bool Fields::explored(std::string_view key, bool current) {
 bool Fields::is_zero(std::string_view key, double value) {
   if (reference_ == nullptr) return value == 0;
   return reference_->take(name_of(key), {"above 0", "0"}, value == 0 ? 1 : 0) == 1;
+}
+
+std::optional<std::filesystem::path> Fields::stated_configuration(std::string_view key) const {
+  const Node* node = mode_ == Mode::kRead ? input_at(key) : nullptr;
+  if (node == nullptr || node->kind != Node::Kind::kScalar || node->text.empty())
+    return std::nullopt;
+  std::filesystem::path file;
+  from_node(*node, name_of(key), file);
+  std::error_code error;
+  if (std::filesystem::is_regular_file(file, error)) return file;
+  try {
+    if (const auto shipped = find_shipped(node->text)) return shipped;
+  } catch (const InputError& several) {
+    fail(*node, name_of(key), ": ", several.what());
+  }
+  fail(*node, name_of(key), ": ",
+       "no such file '" + file.string() + "', and no shipped configuration of this name" +
+           nearest_shipped(node->text));
 }
 
 void Fields::require(const std::string& name) {

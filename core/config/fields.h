@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <span>
@@ -56,6 +57,15 @@ class Fields {
     return value(key, target, help);
   }
 
+  /// A configuration that must exist, as std::filesystem::path or an optional of it: a file relative
+  /// to the one that states it, else a shipped one by its name (find_configuration()).
+  template <class Path>
+  Rule configuration(std::string_view key, Path& target, std::string_view help) {
+    Rule rule = value(key, target, help);
+    if (const auto found = stated_configuration(key)) target = *found;
+    return rule;
+  }
+
   /// A struct with its own describe(). Absent: its defaults.
   template <class T>
   Rule section(std::string_view key, T& target, std::string_view help);
@@ -109,6 +119,10 @@ class Fields {
   Fields(Mode mode, std::string path, const Node* input, SourceLocation location);
 
   [[nodiscard]] bool writing() const { return mode_ == Mode::kPrint || mode_ == Mode::kCheck; }
+  /// The file that a stated key of configuration() means; nullopt where the input does not state it.
+  [[nodiscard]] std::optional<std::filesystem::path> stated_configuration(
+      std::string_view key) const;
+
   /// The dotted path of a key.
   [[nodiscard]] std::string name_of(std::string_view key) const;
   /// What the input holds at a key; nullptr when absent or not reading.

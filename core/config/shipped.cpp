@@ -68,21 +68,24 @@ std::vector<std::string> shipped_configurations() {
   return names;
 }
 
-fs::path find_configuration(const fs::path& stated) {
-  if (is_file(stated) || stated.empty() || stated.is_absolute() || shipped_folder().empty())
-    return stated;
-  if (is_file(shipped_folder() / stated)) return shipped_folder() / stated;
+std::optional<fs::path> find_shipped(const fs::path& name) {
+  if (name.empty() || name.is_absolute() || shipped_folder().empty()) return std::nullopt;
+  if (is_file(shipped_folder() / name)) return shipped_folder() / name;
   const fs::path configs = shipped_folder() / "configs";
-  const std::string name = short_name(stated);
-  if (is_file(configs / (name + ".yaml"))) return configs / (name + ".yaml");
+  const std::string wanted = short_name(name);
+  if (is_file(configs / (wanted + ".yaml"))) return configs / (wanted + ".yaml");
   std::vector<std::string> alike;
   for (const std::string& one : shipped_configurations())
-    if (last_part(one) == name) alike.push_back(one);
+    if (last_part(one) == wanted) alike.push_back(one);
   if (alike.size() > 1)
     throw InputError(
-        stated.string(),
+        name.string(),
         "several shipped configurations have this name, write one of: " + joined(alike));
-  return alike.empty() ? stated : configs / (alike.front() + ".yaml");
+  return alike.empty() ? std::nullopt : std::optional(configs / (alike.front() + ".yaml"));
+}
+
+fs::path find_configuration(const fs::path& stated) {
+  return is_file(stated) ? stated : find_shipped(stated).value_or(stated);
 }
 
 std::string nearest_shipped(const fs::path& stated) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,10 +16,13 @@ namespace saccade::config {
 /// "simulation/walls".
 [[nodiscard]] std::vector<std::string> shipped_configurations();
 
-/// The file that a user who wrote `stated` means: `stated` itself where such a file exists, else a
-/// shipped file. "walls", "simulation/walls" and "configs/simulation/walls.yaml" all name one, as
-/// does "examples/external/constant_velocity.yaml". `stated` as it is where nothing has this name.
-/// Throws InputError that lists them where several shipped configurations have the name.
+/// The shipped file of a name: "walls", "simulation/walls" and "configs/simulation/walls.yaml" all
+/// name one, as does "examples/external/constant_velocity.yaml". nullopt where nothing has this
+/// name. Throws InputError that lists them where several shipped configurations have it.
+[[nodiscard]] std::optional<std::filesystem::path> find_shipped(const std::filesystem::path& name);
+
+/// The file that a user who wrote `stated` means: `stated` itself where such a file exists, else
+/// the shipped one of this name, else `stated` as it is. Throws as find_shipped().
 [[nodiscard]] std::filesystem::path find_configuration(const std::filesystem::path& stated);
 
 /// "; did you mean 'walls'?", with the shipped configuration nearest to a file that does not exist;

@@ -16,6 +16,7 @@
 #include "core/config/config.h"
 #include "core/error.h"
 #include "core/io/files/atomic_file.h"
+#include "core/process/parallel.h"
 #include "core/process/progress.h"
 #include "core/process/shell.h"
 #include "eval/metrics/metrics.h"
@@ -167,23 +168,42 @@ class Phase {
 
   void select_due(const std::string& environment) {
     JobInputs inputs;
+    std::vector<std::size_t> asked;
+    std::vector<Fingerprint> inputs_of;
     for (std::size_t i = 0; i < jobs_.size(); ++i) {
-      SweepJob& job = jobs_[i];
-      if (job.stage != stage_ || job.state != JobState::kPending) continue;
-      const fs::path job_folder = folder_ / "jobs" / job.name;
-      Fingerprint job_inputs = inputs.of(job);
-      if (!environment.empty()) job_inputs["the container"] = environment;
-      if (why_to_run(job, job_folder / "job.yaml", job_inputs).empty()) {
-        job.state = JobState::kSkipped;
-        continue;
-      }
-      fs::remove(job_folder / "job.yaml");
-      mark_failed(folder_, job);  // not any more
-      due_.push_back(i);
-      inputs_.push_back(std::move(job_inputs));
-      launches_.push_back(
-          {job.name, job.commands, job_folder / "log.txt", identity_of(inputs_.back())});
+      if (jobs_[i].stage != stage_ || jobs_[i].state != JobState::kPending) continue;
+      asked.push_back(i);
+      inputs_of.push_back(inputs.of(jobs_[i]));
+      if (!environment.empty()) inputs_of.back()["the container"] = environment;
     }
+    // Reading ten thousand records is most of the time of a sweep that is called again.
+    std::vector<char> is_due(asked.size());
+    parallel_for(asked.size(), [&](std::size_t k) {
+      const SweepJob& job = jobs_[asked[k]];
+      is_due[k] = !why_to_run(job, record_of(job), inputs_of[k]).empty();
+    });
+    for (std::size_t k = 0; k < asked.size(); ++k) {
+      SweepJob& job = jobs_[asked[k]];
+      if (is_due[k]) {
+        make_due(asked[k], std::move(inputs_of[k]));
+      } else {
+        job.state = JobState::kSkipped;
+      }
+    }
+  }
+
+  void make_due(std::size_t i, Fingerprint inputs) {
+    const SweepJob& job = jobs_[i];
+    fs::remove(record_of(job));
+    mark_failed(folder_, job);  // not any more
+    due_.push_back(i);
+    launches_.push_back(
+        {job.name, job.commands, record_of(job).parent_path() / "log.txt", identity_of(inputs)});
+    inputs_.push_back(std::move(inputs));
+  }
+
+  [[nodiscard]] fs::path record_of(const SweepJob& job) const {
+    return folder_ / "jobs" / job.name / "job.yaml";
   }
 
   void finish(std::size_t launch, const LaunchResult& result, Progress& progress) {
@@ -191,7 +211,7 @@ class Phase {
     const fs::path& log = launches_[launch].log;
     jobs_[i].state = result.succeeded ? JobState::kDone : JobState::kFailed;
     if (result.succeeded) {
-      write_job_record(log.parent_path() / "job.yaml", jobs_[i], inputs_[launch], result.wall_s);
+      write_job_record(record_of(jobs_[i]), jobs_[i], inputs_[launch], result.wall_s);
       remember_cost(launch, result);
       return;
     }

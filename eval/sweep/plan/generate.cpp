@@ -123,9 +123,11 @@ void describe(config::Fields& fields, GenerateSplit& split) {
 
 void describe(config::Fields& fields, GenerateScene& scene) {
   fields.value("name", scene.name, "Name of the scene in the manifest. Default: that of the file.");
-  fields.path("simulate", scene.simulate, "Simulation configuration that datasets are made from.")
-      .required()
-      .must_exist();
+  fields
+      .configuration("simulate", scene.simulate,
+                     "Simulation configuration that datasets are made from: a file, or the name of "
+                     "a shipped one such as walls.")
+      .required();
   fields
       .value("weight", scene.weight,
              "Relative probability of this scene; 2 is chosen twice as often as 1.")

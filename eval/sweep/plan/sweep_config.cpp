@@ -174,8 +174,9 @@ void describe(config::Fields& fields, SweepDataset& dataset) {
   config::Rule path = fields.path("path", dataset.path, "A dataset folder. Excludes 'simulate'.");
   if (!dataset.is_optional) path.must_exist();
   fields.expect(!dataset.is_optional || dataset.path, "optional", "belongs to 'path'");
-  fields.path("simulate", dataset.simulate, "A simulation configuration that makes the dataset.")
-      .must_exist();
+  fields.configuration("simulate", dataset.simulate,
+                       "A simulation configuration that makes the dataset: a file, or the name of "
+                       "a shipped one such as walls.");
   fields
       .path("adapter", dataset.adapter,
             "Adapter file of an external simulator, which makes the events from the dataset that "
@@ -211,10 +212,9 @@ void describe(config::Fields& fields, SweepConfiguration& configuration) {
                "Name in tables. Default: that of the file, after the module where it is stated.");
   fields.value("module", configuration.module,
                "Module of `saccade run`. Default: that of the sweep.");
-  fields
-      .path("file", configuration.file,
-            "Configuration file of the module. Default: the module's default values.")
-      .must_exist();
+  fields.configuration("file", configuration.file,
+                       "Configuration of the module: a file, or the name of a shipped one such as "
+                       "tracking/best. Default: the module's default values.");
   fields
       .path("adapter", configuration.adapter,
             "Adapter file of an external program, which runs in place of the module.")

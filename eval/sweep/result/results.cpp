@@ -10,6 +10,7 @@
 #include "core/io/dataset/dataset_record.h"
 #include "core/io/files/atomic_file.h"
 #include "core/median.h"
+#include "core/process/parallel.h"
 #include "core/process/progress.h"
 #include "eval/evaluate.h"
 #include "eval/metrics/catalogue.h"
@@ -128,9 +129,14 @@ void add_information(const DatasetInformation& information, std::vector<SweepRow
 
 SweepResults collect_results(const SweepConfig& sweep, const SweepPlan& plan) {
   SweepResults results{sweep, plan, {}, {}, sweep.metrics};
+  std::vector<const SweepJob*> jobs;
   for (const SweepJob& job : plan.rows())
-    if (job.state != JobState::kHeld)
-      results.rows.push_back(job.state == JobState::kFailed ? failed_row(job) : read_row(job));
+    if (job.state != JobState::kHeld) jobs.push_back(&job);
+  results.rows.resize(jobs.size());
+  parallel_for(jobs.size(), [&](std::size_t i) {
+    const SweepJob& job = *jobs[i];
+    results.rows[i] = job.state == JobState::kFailed ? failed_row(job) : read_row(job);
+  });
   results.groups = group_by_seed(results.rows);
   if (sweep.metrics.empty())
     for (const MetricInfo& metric : default_metrics())

@@ -18,7 +18,7 @@ namespace saccade {
 
 /// A job with its result.
 struct SweepRow {
-  const SweepJob* job;
+  const SweepJob* job = nullptr;
   bool failed = false;
   Metrics metrics;      ///< of metrics.json, or properties of the dataset ("dataset.events")
   std::string machine;  ///< empty where unknown

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <fstream>
+#include <optional>
+#include <string>
 
 #include "core/config/config.h"
 #include "tests/support/command.h"
@@ -73,6 +75,53 @@ TEST(ShippedConfigurations, AnUnknownNameIsAnErrorWithTheNearest) {
               HasSubstr("did you mean 'walls'?"));
   EXPECT_THAT(saccade::testing::error_of([] { return load("configs/tracking/acurate.yaml"); }),
               HasSubstr("did you mean 'tracking/accurate'?"));
+}
+
+struct Named {
+  fs::path scene;
+  std::optional<fs::path> method;
+};
+
+void describe(Fields& fields, Named& named) {
+  fields.configuration("scene", named.scene, "A scene.").required();
+  fields.configuration("method", named.method, "A method.");
+}
+
+/// What a file with this text names.
+Named named_by(const std::string& text, const fs::path& folder = fs::current_path()) {
+  std::ofstream(folder / "named.yaml") << text;
+  return read<Named>(load(folder / "named.yaml"));
+}
+
+TEST(ShippedConfigurations, AreNamedByOtherFiles) {
+  const Elsewhere elsewhere;
+  const Named named = named_by("scene: walls\nmethod: tracking/best\n");
+  EXPECT_TRUE(fs::equivalent(named.scene, walls()));
+  EXPECT_TRUE(fs::equivalent(named.method.value(),
+                             saccade::testing::source_path("configs/tracking/best.yaml")));
+  EXPECT_FALSE(named_by("scene: walls\nmethod: ~\n").method);
+}
+
+TEST(ShippedConfigurations, GiveWayToAFileBesideTheOneThatNamesIt) {
+  const Elsewhere elsewhere;
+  const fs::path folder = fs::current_path() / "study";
+  fs::create_directory(folder);
+  std::ofstream("walls") << "of the working folder, which a file does not depend on\n";
+  EXPECT_TRUE(fs::equivalent(named_by("scene: walls\n", folder).scene, walls()));
+  std::ofstream(folder / "walls") << "duration_s: 1\n";
+  EXPECT_EQ(named_by("scene: walls\n", folder).scene, folder / "walls");
+}
+
+TEST(ShippedConfigurations, AFileThatNamesNoneIsToldTheNearest) {
+  const Elsewhere elsewhere;
+  EXPECT_THAT(saccade::testing::error_of([] { return named_by("\nscene: wals\n"); }),
+              ::testing::AllOf(HasSubstr("named.yaml:2: scene: no such file '"),
+                               HasSubstr("did you mean 'walls'?")));
+  EXPECT_THAT(saccade::testing::error_of([] { return named_by("scene: thesis\n"); }),
+              ::testing::AllOf(HasSubstr("named.yaml:1: scene: "),
+                               HasSubstr("depth/thesis, mosaic/thesis")));
+  EXPECT_THAT(saccade::testing::error_of([] { return named_by("method: tracking/best\n"); }),
+              HasSubstr("scene"));
 }
 
 }  // namespace
