@@ -1,7 +1,6 @@
 #include "simulator/dataset_cache.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -17,6 +16,7 @@
 #include "core/io/files/folder_name.h"
 #include "core/io/files/input_log.h"
 #include "core/io/files/sha256.h"
+#include "core/io/files/unfinished_sibling.h"
 #include "core/process/program.h"
 #include "core/process/progress.h"
 #include "core/version.h"
@@ -176,9 +176,7 @@ void link_dataset(const fs::path& cached, const fs::path& output) {
     target.create_parent();
     fs::remove_all(name);
   }
-  const fs::path link =
-      name.parent_path() / fmt::format(".{}.partial-{}", name.filename().string(), ::getpid());
-  fs::remove(link);
+  const fs::path link = unfinished_sibling(name, "partial");
   fs::create_directory_symlink(fs::absolute(cached), link);
   fs::rename(link, name);
 }

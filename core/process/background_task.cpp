@@ -3,10 +3,12 @@
 #include <tbb/task_group.h>
 
 #include <exception>
+#include <optional>
 #include <utility>
 
 #include "core/check.h"
 #include "core/process/thread_pool.h"
+#include "core/process/work_handover.h"
 
 namespace saccade {
 
@@ -19,8 +21,9 @@ struct BackgroundTask::State {
     }
   }
 
-  std::function<void()> work;        ///< empty: none that is not waited for
-  std::shared_ptr<ThreadPool> pool;  ///< where it runs; null: it has not begun
+  std::function<void()> work;            ///< empty: none that is not waited for
+  std::shared_ptr<ThreadPool> pool;      ///< where it runs; null: it has not begun
+  std::optional<WorkHandover> handover;  ///< of what runs in the pool
   tbb::task_group group;
   std::exception_ptr error;
 };
@@ -39,8 +42,10 @@ void BackgroundTask::start(std::function<void()> work) {
   const std::shared_ptr<ThreadPool> pool = current_thread_pool();
   if (pool->arena.max_concurrency() == 1) return;
   state_->pool = pool;
+  state_->handover.emplace();
   pool->arena.execute([state = state_.get()] {
     state->group.run([state] {
+      const WorkHandover::Part part(*state->handover);
       const InThreadPool mark(*state->pool);
       state->run();
     });
@@ -55,6 +60,7 @@ void BackgroundTask::settle() {
     state_->group.wait();
   else
     state_->pool->arena.execute([this] { state_->group.wait(); });
+  state_->handover.reset();
   state_->pool.reset();
   state_->work = nullptr;
 }

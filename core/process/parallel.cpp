@@ -11,6 +11,7 @@
 
 #include "core/check.h"
 #include "core/process/thread_pool.h"
+#include "core/process/work_handover.h"
 
 namespace saccade {
 namespace {
@@ -64,7 +65,9 @@ void parallel_for_ranges(std::size_t count, std::size_t grain,
     for (std::size_t i = 0; i < ranges; ++i) run(i);
     return;
   }
+  WorkHandover handover;
   const auto run_in_pool = [&](std::size_t i) {
+    const WorkHandover::Part part(handover);
     const InThreadPool mark(*pool);
     run(i);
   };

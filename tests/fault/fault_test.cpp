@@ -145,6 +145,21 @@ class Faults : public ::testing::TestWithParam<std::size_t> {
                                {"SACCADE_FAULT_COUNT", (counts_.path() / "count").string()}});
     return saccade(words());
   }
+  /// The call as a process that goes on beside this one; what it says of errors goes to `log`.
+  [[nodiscard]] pid_t begin(const fs::path& log) const {
+    const Words all = words();
+    std::vector<char*> argv{const_cast<char*>(SACCADE_COMMAND)};
+    for (const std::string& word : all) argv.push_back(const_cast<char*>(word.c_str()));
+    argv.push_back(nullptr);
+    const pid_t child = fork();
+    if (child == 0) {
+      std::freopen(log.c_str(), "w", stderr);
+      std::freopen("/dev/null", "w", stdout);
+      execv(SACCADE_COMMAND, argv.data());
+      _exit(127);
+    }
+    return child;
+  }
   /// How many calls of the kind a call without faults makes.
   [[nodiscard]] long count(const std::string& kind) const {
     fs::remove(counts_.path() / "count");
@@ -233,18 +248,8 @@ TEST_P(Faults, ASignalEndsItWithOneLineAndNothingTemporary) {
   for (const auto& [signal, code] : {std::pair{SIGINT, 130}, std::pair{SIGTERM, 143}})
     for (const int after_ms : {0, 5, 20, 60}) {
       clear();
-      const Words all = words();
-      std::vector<char*> argv{const_cast<char*>(SACCADE_COMMAND)};
-      for (const std::string& word : all) argv.push_back(const_cast<char*>(word.c_str()));
-      argv.push_back(nullptr);
       const fs::path log = counts_.path() / "log";
-      const pid_t child = fork();
-      if (child == 0) {
-        std::freopen(log.c_str(), "w", stderr);
-        std::freopen("/dev/null", "w", stdout);
-        execv(SACCADE_COMMAND, argv.data());
-        _exit(127);
-      }
+      const pid_t child = begin(log);
       // Not before it is at work: a program that has not begun ends by the signal itself.
       while (!catches(child, signal)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
       std::this_thread::sleep_for(std::chrono::milliseconds(after_ms));
@@ -267,6 +272,40 @@ TEST_P(Faults, ASignalEndsItWithOneLineAndNothingTemporary) {
       }
     }
   EXPECT_GT(interrupted, 0) << "it was always over before the signal came";
+}
+
+TEST_P(Faults, WhatItWritesMayBeTakenAwayMeanwhile) {
+  saccade_ok(words());
+  expected_ = hashes(out());
+  int noticed = 0;
+  for (const int after_ms : {0, 1, 2, 5, 10, 20, 40}) {
+    SCOPED_TRACE(fmt::format("{} after {} ms", call().name, after_ms));
+    clear();
+    const fs::path log = counts_.path() / "log";
+    const pid_t child = begin(log);
+    int status = 0;
+    pid_t ended = 0;
+    while (left_behind().empty() && ended == 0) ended = waitpid(child, &status, WNOHANG);
+    std::this_thread::sleep_for(std::chrono::milliseconds(after_ms));
+    std::error_code ignored;
+    for (const std::string& name : left_behind()) fs::remove_all(folder_.path() / name, ignored);
+    if (ended == 0) waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFEXITED(status)) << read_file(log);
+    if (WEXITSTATUS(status) != 0) {
+      ++noticed;
+      EXPECT_TRUE(WEXITSTATUS(status) == 1 || WEXITSTATUS(status) == 2) << WEXITSTATUS(status);
+      EXPECT_THAT(read_file(log), HasSubstr("saccade: "));
+      EXPECT_FALSE(fs::exists(out())) << read_file(log);
+    } else if (fs::exists(out()) && call().repeats) {
+      EXPECT_EQ(hashes(out()), expected_);
+    }
+    saccade_ok(words());
+    if (call().repeats) {
+      EXPECT_EQ(hashes(out()), expected_);
+    }
+  }
+  std::cout << fmt::format("{}: taken away 7 times, {} ended in an error\n", call().name, noticed)
+            << std::flush;
 }
 
 INSTANTIATE_TEST_SUITE_P(Calls, Faults, ::testing::Range(std::size_t{0}, calls().size()),

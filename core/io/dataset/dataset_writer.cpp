@@ -30,6 +30,13 @@ fs::path numbered(const char* folder, const char* stem, std::size_t index, const
   return fs::path(folder) / fmt::format("{}_{:08}.{}", stem, index, ending);
 }
 
+/// The folder may have been taken away meanwhile, and made anew by the next file.
+void check_present(const fs::path& folder, const std::vector<StampedFile>& list) {
+  for (const StampedFile& listed : list)
+    if (!fs::exists(folder / listed.file))
+      throw InputError((folder / listed.file).string(), "was removed by someone else");
+}
+
 void write_list_if_any(const fs::path& list, const std::vector<StampedFile>& files) {
   for (std::size_t i = 0; i < files.size(); ++i) {
     SACCADE_CHECK(!files[i].file.empty());  // no index was left out
@@ -181,6 +188,7 @@ std::optional<double> DatasetWriter::mean_depth() const {
 
 DatasetRecord DatasetWriter::finish(DatasetRecord record) {
   for (const std::unique_ptr<EventWriter>& writer : event_writers_) writer->close();
+  for (const auto* list : {&frames_, &depth_maps_, &flow_maps_}) check_present(folder_, *list);
   write_list_if_any(folder_ / "images.txt", frames_);
   write_list_if_any(folder_ / "depth.txt", depth_maps_);
   write_list_if_any(folder_ / "flow.txt", flow_maps_);

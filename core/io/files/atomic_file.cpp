@@ -1,10 +1,7 @@
 #include "core/io/files/atomic_file.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
-#include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -13,6 +10,7 @@
 
 #include "core/check.h"
 #include "core/error.h"
+#include "core/io/files/unfinished_sibling.h"
 
 namespace saccade {
 namespace fs = std::filesystem;
@@ -25,14 +23,6 @@ fs::path final_name(const fs::path& path) {
   const fs::path name = whole.has_filename() ? whole : whole.parent_path();
   if (name.filename().empty()) throw InputError(path.string(), "is no name to write to");
   return fs::is_symlink(name) && fs::exists(name) ? fs::canonical(name) : name;
-}
-
-/// A hidden name in the same folder, so that renaming stays within one file system; unique among
-/// the processes of this machine.
-fs::path sibling_of(const fs::path& target, const std::string& kind) {
-  static std::atomic<unsigned> counter{0};
-  return target.parent_path() /
-         fmt::format(".{}.{}-{}-{}", target.filename().string(), kind, ::getpid(), counter++);
 }
 
 void create_parent_of(const fs::path& target) {
@@ -52,8 +42,9 @@ void rename_or_throw(const fs::path& from, const fs::path& to) {
 }  // namespace
 
 AtomicFile::AtomicFile(const fs::path& file)
-    : target_(final_name(file)), temporary_(sibling_of(target_, "partial")) {
+    : target_(final_name(file)), temporary_(unfinished_sibling(target_, "partial")) {
   create_parent_of(target_);
+  remove_abandoned_siblings(target_.parent_path());
   if (fs::is_directory(target_)) throw InputError(file.string(), "is a folder, not a file");
   if (fs::exists(target_) && !fs::is_regular_file(target_))
     throw InputError(file.string(), "is a device or the like, which cannot be replaced by a file");
@@ -107,7 +98,7 @@ void FinalFolder::take(const fs::path& complete) const {
   // Exchanged in one step where the file system can, so that the name is never without a folder.
   fs::path old = complete;
   if (::renameat2(AT_FDCWD, complete.c_str(), AT_FDCWD, path_.c_str(), RENAME_EXCHANGE) != 0) {
-    old = sibling_of(path_, "old");
+    old = unfinished_sibling(path_, "old");
     rename_or_throw(path_, old);
     try {
       rename_or_throw(complete, path_);
@@ -122,9 +113,10 @@ void FinalFolder::take(const fs::path& complete) const {
 }
 
 AtomicFolder::AtomicFolder(const fs::path& folder, std::string marker)
-    : final_(folder, std::move(marker)), temporary_(sibling_of(final_.path(), "partial")) {
+    : final_(folder, std::move(marker)), temporary_(unfinished_sibling(final_.path(), "partial")) {
   final_.check_replaceable();
   final_.create_parent();
+  remove_abandoned_siblings(target().parent_path());
   std::error_code error;
   fs::create_directory(path(), error);
   if (error) throw InputError(folder.string(), "cannot be created: " + error.message());

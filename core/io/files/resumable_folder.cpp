@@ -12,6 +12,7 @@
 #include "core/io/files/file_bytes.h"
 #include "core/io/files/file_lock.h"
 #include "core/io/files/sha256.h"
+#include "core/io/files/unfinished_sibling.h"
 
 namespace saccade {
 namespace fs = std::filesystem;
@@ -20,6 +21,8 @@ namespace {
 std::atomic<int> unfinished_folders = 0;
 
 constexpr const char* kLockFile = "lock";
+constexpr const char* kContent = "content";
+constexpr const char* kJournal = "journal";
 constexpr const char* kInputsFile = "inputs.yaml";
 /// Stands beside the content while that is being given its name, with the hash of its marker.
 constexpr const char* kCompleteFile = "complete";
@@ -56,6 +59,19 @@ void remove_workplace(const fs::path& folder) {
   fs::remove_all(folder, ignored);
 }
 
+/// Whether there is nothing but what this class makes. The lock may be gone: a program whose
+/// workplace was removed may have made a part of it anew.
+bool may_be_workplace(const fs::path& folder) {
+  if (fs::exists(folder / kLockFile)) return true;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (name != kContent && name != kJournal && name != kInputsFile && name != kCompleteFile)
+      return false;
+  }
+  return !error;
+}
+
 }  // namespace
 
 std::string difference(const Fingerprint& before, const Fingerprint& now) {
@@ -86,9 +102,9 @@ ResumableFolder::ResumableFolder(const fs::path& folder, std::string marker,
     : final_(folder, std::move(marker)), fingerprint_(fingerprint) {
   final_.check_replaceable();
   final_.create_parent();
+  remove_abandoned_siblings(target().parent_path());
   workplace_ = target().parent_path() / ("." + target().filename().string() + ".unfinished");
-  if (fs::exists(workplace_) && !fs::exists(workplace_ / kLockFile) &&
-      !(fs::is_directory(workplace_) && fs::is_empty(workplace_)))
+  if (fs::exists(workplace_) && !may_be_workplace(workplace_))
     throw InputError(workplace_.string(), "is in the way: remove it or choose another output");
   try {
     lock_ = std::make_unique<Lock>(workplace_, target());
@@ -111,6 +127,9 @@ ResumableFolder::~ResumableFolder() {
   --unfinished_folders;
   if (!committed_) remove_workplace(workplace_);
 }
+
+fs::path ResumableFolder::path() const { return workplace_ / kContent; }
+fs::path ResumableFolder::journal() const { return workplace_ / kJournal; }
 
 bool ResumableFolder::is_any_unfinished() { return unfinished_folders > 0; }
 
@@ -161,6 +180,10 @@ void ResumableFolder::start_clean(const std::string& why) {
 
 void ResumableFolder::commit() {
   SACCADE_CHECK(!committed_);
+  // Files are written into a folder that is made anew where it is gone: a half would be left.
+  for (const char* file : {kLockFile, kInputsFile})
+    if (!fs::exists(workplace_ / file))
+      throw InputError(workplace_.string(), "was removed by someone else while it was written");
   write_atomically(workplace_ / kCompleteFile, sha256_of_file(path() / final_.marker()));
   final_.take(path());
   committed_ = true;

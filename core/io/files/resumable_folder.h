@@ -31,9 +31,9 @@ class ResumableFolder {
   ResumableFolder& operator=(const ResumableFolder&) = delete;
 
   /// Where to write until commit(). Files whose writing was cut short are not in it any more.
-  [[nodiscard]] std::filesystem::path path() const { return workplace_ / "content"; }
+  [[nodiscard]] std::filesystem::path path() const;
   /// A folder for what is needed to go on: not a part of the result.
-  [[nodiscard]] std::filesystem::path journal() const { return workplace_ / "journal"; }
+  [[nodiscard]] std::filesystem::path journal() const;
   /// The final name.
   [[nodiscard]] const std::filesystem::path& target() const { return final_.path(); }
 

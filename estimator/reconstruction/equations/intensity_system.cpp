@@ -13,12 +13,16 @@ namespace {
 
 /// The terms of an observation for its square of four pixels, whose corners are 0 upper left, 1 upper right, 2
 /// lower left and 3 lower right, all at once: the products of the corners' weights, then those with
-/// the log intensity (4). Lane 5 is 0.
-using LaneIndices = int __attribute__((vector_size(kLanes * sizeof(int))));
-constexpr LaneIndices kOne = {0, 0, 0, 0, 1, 1, 1, 2, 2, 3, 0, 1, 2, 3, 5, 5};
-constexpr LaneIndices kOther = {0, 1, 2, 3, 1, 2, 3, 2, 3, 3, 4, 4, 4, 4, 5, 5};
+/// the log intensity (4), each times the weight of the observation. Lane 5 is 0.
+Lanes products(float weight, const Lanes& row) {
+  const Lanes one =
+      __builtin_shufflevector(row, row, 0, 0, 0, 0, 1, 1, 1, 2, 2, 3, 0, 1, 2, 3, 5, 5);
+  const Lanes other =
+      __builtin_shufflevector(row, row, 0, 1, 2, 3, 1, 2, 3, 2, 3, 3, 4, 4, 4, 4, 5, 5);
+  return weight * one * other;
+}
 constexpr std::size_t kProducts = 10;
-/// Where a product belongs: the corner kOne, whose neighbour kOther is.
+/// Where a product belongs: the corner of one, whose neighbour the other is.
 constexpr std::array<std::size_t, kProducts> kCorner = {0, 0, 0, 0, 1, 1, 1, 2, 2, 3};
 constexpr std::array<std::size_t, kProducts> kNeighbour = {0, 1, 3, 4, 0, 2, 3, 0, 1, 0};
 
@@ -111,8 +115,7 @@ void IntensitySystem::add_run(std::span<const GridObservation> observations) {
     const auto& f = o.point.weight;
     const Lanes row = {f[0], f[1], f[2], f[3], o.log_intensity - mean};
     const int first = unrolled(o.point.index[0]);
-    cells_[static_cast<std::size_t>(first)] +=
-        o.weight * __builtin_shuffle(row, kOne) * __builtin_shuffle(row, kOther);
+    cells_[static_cast<std::size_t>(first)] += products(o.weight, row);
     const float w = o.weight * scale;
     entries_.push_back({first, {w * f[0], w * f[1], w * f[2], w * f[3]}});
   }

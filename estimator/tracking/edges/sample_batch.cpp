@@ -20,12 +20,11 @@ std::uint32_t mix(std::uint32_t x) {
 }
 
 using Quad = float __attribute__((vector_size(16)));
-using QuadPlaces = std::int32_t __attribute__((vector_size(16)));
 
-Quad lower_halves(Quad a, Quad b) { return __builtin_shuffle(a, b, QuadPlaces{0, 1, 4, 5}); }
-Quad upper_halves(Quad a, Quad b) { return __builtin_shuffle(a, b, QuadPlaces{2, 3, 6, 7}); }
-Quad even_lanes(Quad a, Quad b) { return __builtin_shuffle(a, b, QuadPlaces{0, 2, 4, 6}); }
-Quad odd_lanes(Quad a, Quad b) { return __builtin_shuffle(a, b, QuadPlaces{1, 3, 5, 7}); }
+Quad lower_halves(Quad a, Quad b) { return __builtin_shufflevector(a, b, 0, 1, 4, 5); }
+Quad upper_halves(Quad a, Quad b) { return __builtin_shufflevector(a, b, 2, 3, 6, 7); }
+Quad even_lanes(Quad a, Quad b) { return __builtin_shufflevector(a, b, 0, 2, 4, 6); }
+Quad odd_lanes(Quad a, Quad b) { return __builtin_shufflevector(a, b, 1, 3, 5, 7); }
 void store(Quad quad, float* target) { std::memcpy(target, &quad, sizeof quad); }
 
 }  // namespace

@@ -3,7 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <array>
+#include <csignal>
 #include <fstream>
 
 #include "tests/support/command.h"
@@ -112,6 +116,65 @@ TEST(AtomicFolder, LeavesForeignFoldersAlone) {
       error_of([&] { return AtomicFolder(folder.path() / "home/thesis.tex", "run.yaml"), 0; }),
       HasSubstr("exists and is no folder"));
   EXPECT_EQ(read_file(folder.path() / "home/thesis.tex"), "precious");
+}
+
+/// A process that begins a file and a folder in `folder`; it lives until it is killed.
+class Writer {
+ public:
+  explicit Writer(const fs::path& folder) {
+    std::array<int, 2> ends{};
+    if (pipe(ends.data()) != 0) return;
+    process_ = fork();
+    if (process_ == 0) {
+      const AtomicFile file(folder / "f.txt");
+      const AtomicFolder run(folder / "r", "run.yaml");
+      std::ofstream(run.path() / "run.yaml") << "half";
+      [[maybe_unused]] const auto told = ::write(ends[1], "", 1);
+      for (;;) pause();
+    }
+    char begun = 0;
+    EXPECT_EQ(read(ends[0], &begun, 1), 1);
+    for (const int end : ends) close(end);
+  }
+  ~Writer() { end(); }
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+
+  void end() {
+    if (process_ <= 0) return;
+    kill(process_, SIGKILL);
+    waitpid(process_, nullptr, 0);
+    process_ = 0;
+  }
+
+ private:
+  pid_t process_ = 0;
+};
+
+TEST(AtomicFile, WhatAKilledProcessLeftGoesWithTheNextOne) {
+  const TemporaryFolder folder;
+  Writer writer(folder.path());
+  writer.end();
+  EXPECT_EQ(entries(folder.path()), 2U);
+  write_atomically(folder.path() / "other.txt", "new");
+  EXPECT_EQ(entries(folder.path()), 1U);
+}
+
+TEST(AtomicFile, WhatAnotherProcessStillWritesStays) {
+  const TemporaryFolder folder;
+  const Writer writer(folder.path());
+  write_atomically(folder.path() / "f.txt", "new");
+  EXPECT_EQ(entries(folder.path()), 3U);
+}
+
+TEST(AtomicFile, WhatNobodyHereCanJudgeStays) {
+  const TemporaryFolder folder;
+  // No process has this number, but the first is of another machine, and the others are a user's.
+  for (const char* name : {".f.partial-0123456789abcdef.2147483646-0", ".f.partial-2147483646-0",
+                           ".f.partial-", "-", ".-"})
+    folder.write(name, "theirs");
+  write_atomically(folder.path() / "f", "new");
+  EXPECT_EQ(entries(folder.path()), 6U);
 }
 
 }  // namespace

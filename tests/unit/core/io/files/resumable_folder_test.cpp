@@ -133,6 +133,24 @@ TEST_F(Resumable, RefusesASecondWriter) {
   EXPECT_TRUE(fs::exists(first->path() / "f"));
 }
 
+TEST_F(Resumable, SaysThatItsFolderWasTakenAway) {
+  {
+    const auto first = open();
+    write_atomically(first->path() / "early", "x");
+    fs::remove_all(first->path().parent_path());
+    write_atomically(first->path() / "late", "x");
+    write_atomically(first->path() / "dataset.yaml", "x");
+    EXPECT_THAT(error_of([&] { return first->commit(), 0; }),
+                HasSubstr(".out.unfinished: was removed by someone else"));
+  }
+  EXPECT_FALSE(fs::exists(name_));
+  // A thread that was late leaves a part, without the lock.
+  folder_.write(".out.unfinished/content/late", "x");
+  const auto second = open();
+  EXPECT_FALSE(second->is_resumed());
+  EXPECT_FALSE(fs::exists(second->path() / "late"));
+}
+
 TEST_F(Resumable, LeavesForeignThingsAlone) {
   folder_.write("out/thesis.tex", "precious");
   EXPECT_THAT(error_of(open_), HasSubstr("exists and holds other files"));
