@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
@@ -186,7 +187,8 @@ Store store_for(const std::string& name, std::size_t vertices, PointCloud& cloud
     if (name == kColour[axis]) {
       cloud.colours.resize(vertices);
       return [&cloud, axis](std::size_t v, double value) {
-        cloud.colours[v][axis] = static_cast<std::uint8_t>(value);
+        // Other programs also write colours as floats, of any size.
+        cloud.colours[v][axis] = value > 0 ? static_cast<std::uint8_t>(std::min(value, 255.0)) : 0;
       };
     }
   }

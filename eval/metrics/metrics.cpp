@@ -54,6 +54,8 @@ Json parse_object(std::string_view text, const std::string& source) {
     return root;
   } catch (const Json::parse_error& error) {
     throw InputError(source, "byte " + std::to_string(error.byte) + " is no valid JSON");
+  } catch (const Json::exception&) {
+    throw InputError(source, "holds a number that is too large");
   }
 }
 

@@ -76,6 +76,15 @@ TEST_F(PlyFile, ErrorsNameTheLine) {
               HasSubstr("c.ply:7: property 'x' is stated"));
 }
 
+TEST_F(PlyFile, ColoursOfOtherTypesStayWithinAByte) {
+  const auto cloud = read_ply(folder_.write(
+      "c.ply",
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty "
+      "float z\nproperty float red\nproperty double green\nproperty int blue\nend_header\n1 2 3 "
+      "-2.5 1e300 7\n"));
+  EXPECT_THAT(cloud.colours.at(0), ::testing::ElementsAre(0, 255, 7));
+}
+
 TEST_F(PlyFile, ACountThatTheFileCannotHoldTakesNoMemory) {
   const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
   std::string many;

@@ -61,6 +61,7 @@ TEST(Metrics, SkipsLeavesThatAreNoNumbers) {
 TEST(Metrics, RefusesTextThatIsNoJsonObject) {
   EXPECT_THROW((void)parse_json_metrics("[1]", "x.json"), InputError);
   EXPECT_THROW((void)parse_json_metrics(R"({"a": nan})", "x.json"), InputError);
+  EXPECT_THROW((void)parse_json_metrics(R"({"a": 1e999})", "x.json"), InputError);
   EXPECT_THROW((void)read_json_metrics("no/such/file.json"), InputError);
 }
 
