@@ -43,8 +43,10 @@ void BackgroundTask::start(std::function<void()> work) {
   if (pool->arena.max_concurrency() == 1) return;
   state_->pool = pool;
   state_->handover.emplace();
+  WorkHandover::send();
   pool->arena.execute([state = state_.get()] {
     state->group.run([state] {
+      WorkHandover::receive();
       const WorkHandover::Part part(*state->handover);
       const InThreadPool mark(*state->pool);
       state->run();

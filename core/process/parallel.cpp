@@ -67,11 +67,13 @@ void parallel_for_ranges(std::size_t count, std::size_t grain,
   }
   WorkHandover handover;
   const auto run_in_pool = [&](std::size_t i) {
+    WorkHandover::receive();
     const WorkHandover::Part part(handover);
     const InThreadPool mark(*pool);
     run(i);
   };
   const auto all = [&] { tbb::parallel_for(std::size_t{0}, ranges, run_in_pool); };
+  WorkHandover::send();
   // Entering the arena anew would let the thread take what another thread has handed over to it, such
   // as the wait for the very work that this is a part of.
   if (is_inside(*pool))

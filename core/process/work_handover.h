@@ -13,15 +13,21 @@ namespace saccade {
 /// waited for all of it. For core/process alone.
 class WorkHandover {
  public:
-  WorkHandover() { release(begun_); }
+  WorkHandover() = default;
   ~WorkHandover() { acquire(done_); }
   WorkHandover(const WorkHandover&) = delete;
   WorkHandover& operator=(const WorkHandover&) = delete;
 
+  /// By the thread that hands the work over, when all that belongs to it has been made.
+  static void send() { release(begun); }
+  /// First of all by a thread that begins a part, before it reads anything that it was given: so
+  /// this cannot be told for each handover alone.
+  static void receive() { acquire(begun); }
+
   /// As long as a part of the work is done.
   class Part {
    public:
-    explicit Part(WorkHandover& handover) : handover_(handover) { acquire(handover_.begun_); }
+    explicit Part(WorkHandover& handover) : handover_(handover) {}
     ~Part() { release(handover_.done_); }
     Part(const Part&) = delete;
     Part& operator=(const Part&) = delete;
@@ -39,7 +45,7 @@ class WorkHandover {
   static void release(char& /*at*/) {}
 #endif
 
-  char begun_ = 0;  ///< these are addresses alone
+  inline static char begun = 0;  ///< these are addresses alone
   char done_ = 0;
 };
 
