@@ -58,7 +58,7 @@ class Fields {
   }
 
   /// A configuration that must exist, as std::filesystem::path or an optional of it: a file relative
-  /// to the one that states it, else a shipped one by its name (find_configuration()).
+  /// to the one that states it, else a shipped one by its name (find_shipped()).
   template <class Path>
   Rule configuration(std::string_view key, Path& target, std::string_view help) {
     Rule rule = value(key, target, help);

@@ -51,16 +51,14 @@ class Variables {
   std::vector<std::string> names_;
 };
 
-Words simulation(const fs::path& data, bool lit = false) {
-  Words words{"simulate",  shipped_config(lit ? "simulation/office.yaml" : "simulation/walls.yaml"),
-              "-o",        data.string(),
-              "--set",     "duration_s=0.05",
-              "--set",     "camera={width: 48, height: 36, fx: 40, fy: 40, cx: 23.5, cy: 17.5}",
-              "--set",     "groundtruth.event_labels=true",
-              "--threads", "1",
-              "-q"};
-  if (lit) words.insert(words.end(), {"--set", "scene.lighting={ambient: 0.3}"});
-  return words;
+Words simulation(const fs::path& data) {
+  return {"simulate",  shipped_config("simulation/walls.yaml"),
+          "-o",        data.string(),
+          "--set",     "duration_s=0.05",
+          "--set",     "camera={width: 48, height: 36, fx: 40, fy: 40, cx: 23.5, cy: 17.5}",
+          "--set",     "groundtruth.event_labels=true",
+          "--threads", "1",
+          "-q"};
 }
 
 /// What a call writes, and the call that writes it to `out`.

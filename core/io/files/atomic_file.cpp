@@ -94,6 +94,10 @@ void FinalFolder::create_parent() const { create_parent_of(path_); }
 
 void FinalFolder::take(const fs::path& complete) const {
   check_replaceable();
+  // Without it the folder would be taken for somebody else's. Files make the folders above them
+  // anew, so that one which was removed meanwhile goes on with a part of its content.
+  if (!fs::exists(complete / marker_))
+    throw InputError(complete.string(), "was removed by someone else while it was written");
   if (!fs::exists(path_)) return rename_or_throw(complete, path_);
   // Exchanged in one step where the file system can, so that the name is never without a folder.
   fs::path old = complete;

@@ -52,7 +52,8 @@ class FinalFolder {
   /// Creates the folders above it.
   void create_parent() const;
   /// Gives the folder `complete`, in the same file system, the final name in one step. What stood
-  /// there is removed.
+  /// there is removed. InputError where `complete` holds no marker, which is written last: it was
+  /// taken away meanwhile.
   void take(const std::filesystem::path& complete) const;
 
  private:

@@ -92,6 +92,19 @@ TEST(AtomicFolder, WithoutCommitNothingIsLeft) {
   EXPECT_EQ(entries(folder.path()), 0U);
 }
 
+TEST(AtomicFolder, SaysThatItWasTakenAway) {
+  const TemporaryFolder folder;
+  {
+    AtomicFolder target(folder.path() / "out", "run.yaml");
+    write_atomically(target.path() / "run.yaml", "a: 1\n");
+    fs::remove_all(target.path());
+    write_atomically(target.path() / "late", "x");
+    EXPECT_THAT(error_of([&] { return target.commit(), 0; }),
+                HasSubstr("was removed by someone else"));
+  }
+  EXPECT_EQ(entries(folder.path()), 0U);
+}
+
 TEST(AtomicFolder, ReplacesItsOwnKindAndEmptyFolders) {
   const TemporaryFolder folder;
   folder.write("own/run.yaml", "old");
