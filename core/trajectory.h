@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/rigid3.h"
@@ -37,7 +38,9 @@ class Trajectory {
 
   [[nodiscard]] bool empty() const { return poses_.empty(); }
   [[nodiscard]] std::size_t size() const { return poses_.size(); }
-  [[nodiscard]] std::span<const StampedPose> poses() const { return poses_; }
+  [[nodiscard]] std::span<const StampedPose> poses() const& { return poses_; }
+  /// Of a temporary: the poses themselves, which a loop over them then keeps alive.
+  [[nodiscard]] std::vector<StampedPose> poses() && { return std::move(poses_); }
   [[nodiscard]] double start_s() const { return poses_.front().t_s; }
   [[nodiscard]] double end_s() const { return poses_.back().t_s; }
 

@@ -1,5 +1,8 @@
 #include "core/trajectory.h"
 
+#include <type_traits>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 namespace saccade {
@@ -36,6 +39,13 @@ TEST(Trajectory, LastBefore) {
   EXPECT_EQ(zigzag().last_before(1), 0U);
   EXPECT_EQ(zigzag().last_before(3.9), 1U);
   EXPECT_EQ(zigzag().last_before(9), 2U);
+}
+
+TEST(Trajectory, PosesOfATemporaryOutliveIt) {
+  static_assert(std::is_same_v<decltype(zigzag().poses()), std::vector<StampedPose>>);
+  double sum_s = 0;
+  for (const StampedPose& p : zigzag().poses()) sum_s += p.t_s;
+  EXPECT_EQ(sum_s, 7);
 }
 
 TEST(Trajectory, PathLengthSumsTheSteps) {
