@@ -44,25 +44,32 @@ double recording_start_s(const fs::path& path) {
   return seconds_from_ns(read_event_file_info(events_file_of(path)).first_ns);
 }
 
-EventRecording read_recording(const fs::path& path, const RecordingPart& part) {
+RecordingSource find_recording(const fs::path& path, const RecordingPart& part) {
   if (!fs::exists(event_file_place(path).file)) throw InputError(path.string(), "is not there");
-  EventRecording recording;
+  RecordingSource source;
   // "data/walls/" has an empty file name.
-  recording.name = (path.has_filename() ? path.filename() : path.parent_path().filename()).string();
-  recording.file = path;
-  if (!fs::is_directory(path)) {
-    recording.events = read_events(path, {}, window_of(path, part));
-    recording.size = stated_sensor(path);
-    recording.is_size_stated = recording.size.width > 0;
-    if (!recording.is_size_stated) recording.size = extent(recording.events);
-    return recording;
+  source.name = (path.has_filename() ? path.filename() : path.parent_path().filename()).string();
+  if (fs::is_directory(path)) {
+    const Dataset dataset = Dataset::open(path);
+    source.file = dataset.events_file();
+    if (source.file.empty()) throw InputError(path.string(), "holds no events");
+    source.size = {dataset.camera().width, dataset.camera().height};
+  } else {
+    source.file = path;
+    source.size = stated_sensor(path);
   }
-  const Dataset dataset = Dataset::open(path);
-  recording.file = dataset.events_file();
-  if (recording.file.empty()) throw InputError(path.string(), "holds no events");
-  recording.is_size_stated = true;
-  recording.size = {dataset.camera().width, dataset.camera().height};
-  recording.events = read_events(recording.file, recording.size, window_of(recording.file, part));
+  source.window = window_of(source.file, part);
+  return source;
+}
+
+EventRecording read_recording(const fs::path& path, const RecordingPart& part) {
+  const RecordingSource source = find_recording(path, part);
+  EventRecording recording{.name = source.name,
+                           .file = source.file,
+                           .events = read_events(source.file, source.size, source.window),
+                           .size = source.size,
+                           .is_size_stated = source.size.width > 0};
+  if (!recording.is_size_stated) recording.size = extent(recording.events);
   return recording;
 }
 

@@ -17,6 +17,14 @@ struct RecordingPart {
   std::optional<double> duration_s;  ///< default: to the last event
 };
 
+/// Where the events of a dataset folder or an event file are, none read.
+struct RecordingSource {
+  std::string name;  ///< of that folder or file
+  std::filesystem::path file;
+  SensorSize size;  ///< 0: no one states it
+  TimeWindow window;
+};
+
 /// The events of a dataset folder or an event file.
 struct EventRecording {
   std::string name;  ///< of that folder or file
@@ -28,6 +36,10 @@ struct EventRecording {
 
 /// Time of its first event [s].
 [[nodiscard]] double recording_start_s(const std::filesystem::path& path);
+
+/// Throws InputError for what is not there or holds no events.
+[[nodiscard]] RecordingSource find_recording(const std::filesystem::path& path,
+                                             const RecordingPart& part = {});
 
 /// Throws InputError for what is not there or cannot be read.
 [[nodiscard]] EventRecording read_recording(const std::filesystem::path& path,

@@ -213,7 +213,7 @@ RunSummary run_stabilization(const RunRequest& request) {
       EventQueue events(std::move(stream));
       done = stabilize_events(events, found, config, dataset.camera(),
                               i + 1 == request.repeat ? &folder : nullptr, *progress);
-      timing.io_s += done.io_s + events.waited_s();
+      if (i + 1 == request.repeat) timing.io_s += done.io_s + events.waited_s();
     }
     timing.wall_s.push_back(orientation_s + done.work_s);
     timing.stages_s = {{"orientation", orientation_s}, {"events", done.work_s}};

@@ -223,9 +223,8 @@ RunSummary run_rotation(const RunRequest& request) {
     std::optional<EventQueue> events;
     std::uint64_t expected = 0;
     if (takes_events) {
-      EventStream stream = dataset.stream_events(event_times);
-      expected = stream.expected_count() * static_cast<std::uint64_t>(request.repeat);
-      events.emplace(std::move(stream));
+      events.emplace(dataset.stream_events(event_times));
+      expected = events->expected_count() * static_cast<std::uint64_t>(request.repeat);
       if (events->ahead(1).empty()) refuse_no_events(dataset);
     }
     if (!progress) progress.emplace("rotation", expected, "events");
@@ -234,7 +233,7 @@ RunSummary run_rotation(const RunRequest& request) {
     rates = find_rates(config, dataset.camera(), events ? &*events : nullptr, imu, *progress);
     const double reading_s = events ? events->waited_s() : 0;
     timing.wall_s.push_back(working.seconds() - (reading_s - opened_s));
-    timing.io_s += reading_s;
+    if (i + 1 == request.repeat) timing.io_s += reading_s;
     timing.events = events ? events->dropped() : 0;
   }
   const double first_s = rates.empty() ? 0 : rates.front().t_s;

@@ -13,8 +13,7 @@ namespace {
 const TrackConfig& checked(const TrackConfig& config) {
   if (method_of(config).takes_frames)
     throw InputError("method", "frames takes no events; state edges, intensity or polarity");
-  if (config.method == "edges" &&
-      config.edges.event_frame.window == EventFrameOptions::Window::kSliding)
+  if (!is_fed_in_pieces(config))
     throw InputError("edges.event_window",
                      "sliding frames need all events at once; state disjoint");
   return config;
@@ -28,16 +27,14 @@ LiveTracker::LiveTracker(const TrackConfig& config, const Dataset& dataset, doub
       start_(load_track_start(config_, dataset, start_s, end_s)),
       world_(world_of(config_, start_)),
       tracker_(method_of(config_).make(config_, world_)),
-      monitor_(start_.camera, {}) {
-  monitor_.set_map(world_.edge_points, world_.intensity_map.world_from_map());
-}
+      feed_(*tracker_, world_, start_.world_from_camera) {}
 
 void LiveTracker::check_new_events() const {
   const int width = start_.camera.width, height = start_.camera.height;
-  TimeNs last_ns = events_[fed_ > 0 ? fed_ - 1 : 0].t_ns;
+  TimeNs last_ns = last_ns_.value_or(new_events_.front().t_ns);
   // Without branches, since this passes over all events that there are.
   bool is_good = true;
-  for (const Event& event : buffered().subspan(fed_)) {
+  for (const Event& event : new_events_) {
     is_good &= (event.t_ns >= last_ns) & (event.x < width) & (event.y < height);
     last_ns = event.t_ns;
   }
@@ -45,14 +42,14 @@ void LiveTracker::check_new_events() const {
 }
 
 void LiveTracker::report_new_events() const {
-  TimeNs last_ns = events_[fed_ > 0 ? fed_ - 1 : 0].t_ns;
-  std::size_t i = fed_;
-  for (; events_[i].t_ns >= last_ns && events_[i].x < start_.camera.width &&
-         events_[i].y < start_.camera.height;
+  TimeNs last_ns = last_ns_.value_or(new_events_.front().t_ns);
+  std::size_t i = 0;
+  for (; new_events_[i].t_ns >= last_ns && new_events_[i].x < start_.camera.width &&
+         new_events_[i].y < start_.camera.height;
        ++i)
-    last_ns = events_[i].t_ns;
-  const Event& event = events_[i];
-  const std::string location = fmt::format("events[{}]", i - fed_);
+    last_ns = new_events_[i].t_ns;
+  const Event& event = new_events_[i];
+  const std::string location = fmt::format("events[{}]", i);
   if (event.t_ns < last_ns)
     throw InputError(location,
                      fmt::format("t = {} ns comes after {} ns; events are fed in order of time",
@@ -63,14 +60,9 @@ void LiveTracker::report_new_events() const {
 }
 
 std::span<Event> LiveTracker::room(std::size_t count) {
-  const std::size_t dropped = used_ - std::min(used_, monitor_.history());
-  std::copy(events_.begin() + static_cast<std::ptrdiff_t>(dropped),
-            events_.begin() + static_cast<std::ptrdiff_t>(fed_), events_.begin());
-  used_ -= dropped;
-  fed_ -= dropped;
-  end_ = fed_ + count;
-  if (events_.size() < end_) events_.resize(end_);
-  return std::span(events_).subspan(fed_, count);
+  const std::span<Event> room = feed_.room(count);
+  new_events_ = room;
+  return room;
 }
 
 std::vector<TrackedPose> LiveTracker::feed(std::span<const Event> events) {
@@ -79,18 +71,11 @@ std::vector<TrackedPose> LiveTracker::feed(std::span<const Event> events) {
 }
 
 std::vector<TrackedPose> LiveTracker::feed() {
-  if (end_ == fed_) return {};
+  if (new_events_.empty()) return {};
   check_new_events();
-  if (!has_begun_) tracker_->reset(events_[fed_].t_ns, start_.world_from_camera);
-  has_begun_ = true;
-  fed_ = end_;
-  if (!is_tracking_ && waiting() < tracker_->first_events()) return {};
-  is_tracking_ = true;
-  std::vector<TrackedPose> poses = tracker_->track({.events = buffered().subspan(used_)},
-                                                   [&](std::size_t count) { used_ += count; });
-  monitor_.set_recording({.events = buffered()});
-  for (TrackedPose& pose : poses) monitor_.judge(pose);
-  return poses;
+  last_ns_ = new_events_.back().t_ns;
+  new_events_ = {};
+  return feed_.feed();
 }
 
 }  // namespace saccade

@@ -2,23 +2,21 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "core/event.h"
 #include "core/io/dataset/dataset.h"
-#include "estimator/tracking/check/pose_monitor.h"
 #include "estimator/tracking/track_config.h"
 #include "estimator/tracking/track_start.h"
 #include "estimator/tracking/tracker.h"
+#include "estimator/tracking/tracker_feed.h"
 
 namespace saccade {
 
-/// A tracker that is fed with events as they come. Its poses are those of `saccade run track`,
-/// however the events are divided (a Tracker goes on where it was, but for sliding event frames), but
-/// for the poses that a run adds in gaps (report_gaps()). Where events of one time are divided the
-/// probability of a pose may differ. A tracker that has to find contrast thresholds first waits for
-/// Tracker::first_events(). Memory is that of the events that wait for a pose.
+/// A tracker that is fed with events as they come (TrackerFeed), which are checked. Its poses are
+/// those of `saccade run track`, but for those that a run adds in gaps (report_gaps()).
 class LiveTracker {
  public:
   /// The map is that of `dataset`, for tracking from `start_s` to `end_s`. Throws InputError for what
@@ -37,11 +35,10 @@ class LiveTracker {
   [[nodiscard]] std::vector<TrackedPose> feed();
 
   /// Events that wait for a pose.
-  [[nodiscard]] std::size_t waiting() const { return fed_ - used_; }
+  [[nodiscard]] std::size_t waiting() const { return feed_.waiting(); }
   [[nodiscard]] const TrackWorld& world() const { return world_; }
 
  private:
-  [[nodiscard]] std::span<const Event> buffered() const { return std::span(events_).first(end_); }
   void check_new_events() const;
   [[noreturn]] void report_new_events() const;
 
@@ -49,15 +46,9 @@ class LiveTracker {
   TrackStart start_;
   TrackWorld world_;
   std::unique_ptr<Tracker> tracker_;
-  PoseMonitor monitor_;
-  /// Those that wait, behind those that the monitor may need, then new ones; never made smaller, as
-  /// making room costs more than filling it.
-  Events events_;
-  std::size_t used_ = 0;      ///< of events_, by the tracker
-  std::size_t fed_ = 0;       ///< of events_, before the new ones
-  std::size_t end_ = 0;       ///< of events_, with the new ones
-  bool has_begun_ = false;    ///< to be fed
-  bool is_tracking_ = false;  ///< has had its first events
+  TrackerFeed feed_;
+  std::span<const Event> new_events_;  ///< in the room of feed_
+  std::optional<TimeNs> last_ns_;      ///< of those that were fed
 };
 
 }  // namespace saccade

@@ -12,6 +12,7 @@
 #include "eval/report/html.h"
 #include "eval/report/page.h"
 #include "eval/statistics/statistics_report.h"
+#include "eval/statistics/stream_counter.h"
 #include "eval/table/number_text.h"
 
 namespace saccade {

@@ -30,6 +30,14 @@ class LogHistogram {
     ++counts_[static_cast<std::size_t>(std::clamp(bin, 0.0, last))];
   }
 
+  /// The bin of the value at place `rank`, from 0 for the least on; the last bin beyond them all.
+  [[nodiscard]] std::size_t bin_of_rank(std::size_t rank) const {
+    std::size_t bin = 0;
+    for (std::size_t below = counts_[0]; below <= rank && bin + 1 < counts_.size();)
+      below += counts_[++bin];
+    return bin;
+  }
+
   [[nodiscard]] std::size_t bins() const { return counts_.size(); }
   [[nodiscard]] std::size_t count(std::size_t bin) const { return counts_[bin]; }
   [[nodiscard]] double lower(std::size_t bin) const {

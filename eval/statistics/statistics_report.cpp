@@ -4,11 +4,15 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "core/error.h"
+#include "core/io/events/event_file.h"
 #include "core/io/images/image_file.h"
 #include "core/io/tables/csv_file.h"
+#include "core/process/progress.h"
 #include "eval/picture/chart/line_chart.h"
+#include "eval/statistics/stream_counter.h"
 #include "eval/table/number_text.h"
 #include "eval/table/table.h"
 
@@ -130,17 +134,26 @@ std::string seconds_text(const Event& event) {
 }  // namespace
 
 StreamStatistics statistics_of_recording(const fs::path& path, const RecordingPart& part) {
-  const EventRecording recording = read_recording(path, part);
-  const Events& events = recording.events;
-  const std::string file = recording.file.string();
-  if (events.empty() || events.front().t_ns == events.back().t_ns)
-    throw InputError(file, "holds no two events at different times in this part");
-  if (seconds_from_ns(events.back().t_ns - events.front().t_ns) > kLongest_s)
-    throw InputError(file, "spans more than a day, from " + seconds_text(events.front()) + " to " +
-                               seconds_text(events.back()) +
-                               "; --start-s and --duration-s choose a part");
-  StreamStatistics statistics = stream_statistics(events, recording.size);
-  statistics.name = recording.name;
+  const RecordingSource source = find_recording(path, part);
+  EventStream stream(source.file, source.size, source.window);
+  Progress progress("counting " + source.name, stream.expected_count(), "events");
+  StreamCounter counter(source.size);
+  std::optional<Event> first, last;
+  for (auto events = stream.next(); !events.empty(); events = stream.next()) {
+    if (!first) first = events.front();
+    last = events.back();
+    if (seconds_from_ns(last->t_ns - first->t_ns) > kLongest_s)
+      throw InputError(source.file.string(),
+                       "spans more than a day, from " + seconds_text(*first) + " to " +
+                           seconds_text(*last) +
+                           " at least; --start-s and --duration-s choose a part");
+    counter.add(events);
+    progress.add(events.size());
+  }
+  if (!first || first->t_ns == last->t_ns)
+    throw InputError(source.file.string(), "holds no two events at different times in this part");
+  StreamStatistics statistics = counter.statistics();
+  statistics.name = source.name;
   return statistics;
 }
 

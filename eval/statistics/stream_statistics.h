@@ -1,12 +1,9 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "core/event.h"
-#include "core/io/events/event_file.h"
 #include "eval/statistics/log_histogram.h"
 
 namespace saccade {
@@ -17,7 +14,9 @@ struct EventGaps {
   LogHistogram opposite;  ///< next of the other polarity [us]
   double opposite_fraction = 0;
   double shortest_us = 0;
-  double floor_us = 0;   ///< one gap in a thousand is shorter: the blind time, where it shows
+  /// One gap in a thousand is shorter: the blind time, where it shows. This and the median are
+  /// counted in bins, and are right to 0.03 %.
+  double floor_us = 0;
   double median_us = 0;  ///< these four are 0 where no pixel has two events
 };
 
@@ -51,7 +50,7 @@ struct RateBin {
 /// Statistics that a stream of events has whatever made it, so that a simulation can be held
 /// against a recording (docs/realism.md).
 struct StreamStatistics {
-  std::string name = {};  ///< of the recording; stream_statistics() leaves it empty
+  std::string name = {};  ///< of the recording; StreamCounter leaves it empty
   std::size_t events = 0;
   double duration_s = 0;     ///< first to last event
   double pixel_rate_hz = 0;  ///< events/s of a pixel, mean
@@ -61,10 +60,5 @@ struct StreamStatistics {
   PixelRates pixels;
   NoiseSigns noise;
 };
-
-/// `events` in EventOrder, at least two at different times, inside `size` (contract);
-/// `rate_bin_s` >= 1 ns.
-[[nodiscard]] StreamStatistics stream_statistics(std::span<const Event> events, SensorSize size,
-                                                 double rate_bin_s = 0.005);
 
 }  // namespace saccade

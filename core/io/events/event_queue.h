@@ -13,7 +13,11 @@ namespace saccade {
 /// for that: the memory is that of what he sees.
 class EventQueue {
  public:
-  explicit EventQueue(EventStream stream) : stream_(std::move(stream)) {}
+  explicit EventQueue(EventStream stream)
+      : stream_(std::move(stream)), expected_count_(stream_.expected_count()) {}
+
+  /// About how many events there are in all; 0: unknown.
+  [[nodiscard]] std::uint64_t expected_count() const { return expected_count_; }
 
   /// Those that were not dropped, at least `count` of them unless the stream ends before; valid until the
   /// next call. Whole runs of equal time, but for those that are too long (EventStream::next()).
@@ -29,6 +33,7 @@ class EventQueue {
 
  private:
   EventStream stream_;
+  std::uint64_t expected_count_;
   Events events_;
   std::size_t begin_ = 0;  ///< of those that were not dropped
   std::uint64_t dropped_ = 0;

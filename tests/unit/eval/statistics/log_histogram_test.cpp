@@ -28,5 +28,14 @@ TEST(LogHistogram, ValuesOutsideGoToTheEnds) {
   EXPECT_EQ(histogram.count(1), 3U);
 }
 
+TEST(LogHistogram, RanksCountFromTheLeast) {
+  LogHistogram histogram(1, 2, 1);
+  for (const double value : {20.0, 3.0, 30.0, 4.0, 5.0}) histogram.add(value);
+  EXPECT_EQ(histogram.bin_of_rank(0), 0U);
+  EXPECT_EQ(histogram.bin_of_rank(2), 0U);
+  EXPECT_EQ(histogram.bin_of_rank(3), 1U);
+  EXPECT_EQ(histogram.bin_of_rank(9), 1U);
+}
+
 }  // namespace
 }  // namespace saccade
