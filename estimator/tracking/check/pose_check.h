@@ -18,7 +18,7 @@ namespace saccade {
 /// Tells from what was just measured whether a pose can be right, whatever method found it. Map and
 /// measurement are drawn into cells of 1/120 of the image's width; that is coarser than
 /// any tracker errs, and finer than the poses are displaced that count as lost. What lies on the
-/// map's edges by chance, and what a displaced pose explains as well, says nothing. Some ten
+/// map's edges by chance, and what a displaced pose explains as well, says nothing. Some thirty
 /// microseconds a pose.
 class PoseCheck {
  public:
@@ -45,25 +45,39 @@ class PoseCheck {
  private:
   static constexpr std::int32_t kNowhere = -1;
 
+  /// Points of the map by coordinate, so that many are projected at a time.
+  struct Points {
+    std::vector<float> x, y, z;
+
+    [[nodiscard]] std::size_t size() const { return x.size(); }
+    void clear();
+    void add(float px, float py, float pz);
+  };
+
   [[nodiscard]] std::int32_t cell_at(float x, float y) const;
   void clear_measurement();
   void add_measured(std::int32_t cell);
+  /// Writes the cell of each point into cells_, kNowhere for those that are not in view, and its
+  /// inverse depth into inverse_depths_.
+  void project(const Points& points, const Rigid3& camera_from_map);
   void draw_map(const Rigid3& camera_from_map, PoseEvidence& evidence);
   void compare(PoseEvidence& evidence) const;
-  [[nodiscard]] double confirmed_edges(const Rigid3& camera_from_map) const;
+  [[nodiscard]] double confirmed_edges(const Rigid3& camera_from_map);
 
   PinholeCamera camera_;  ///< undistorted
   float cells_per_px_;
   int columns_, rows_;
   std::vector<std::int32_t> cell_of_pixel_;  ///< of the sensor, kNowhere beyond the undistorted one
-  std::vector<Eigen::Vector3f> map_;
+  Points map_;
   std::vector<std::int32_t> measured_;         ///< cell of every event or pixel
   std::vector<std::uint8_t> has_measurement_;  ///< by cell
   std::vector<std::uint8_t> has_edge_;         ///< by cell, at the pose that is looked at
   std::vector<std::uint16_t> block_of_cell_;
-  std::vector<int> cells_of_block_;       ///< number of them
-  std::vector<std::uint8_t> is_mapped_;   ///< by block: whether it shows an edge
-  std::vector<Eigen::Vector3f> visible_;  ///< some of the map's points in view
+  std::vector<int> cells_of_block_;      ///< number of them
+  std::vector<std::uint8_t> is_mapped_;  ///< by block: whether it shows an edge
+  Points probes_;                        ///< some of the map's points in view
+  std::vector<std::int32_t> cells_;      ///< of project()
+  std::vector<float> inverse_depths_;
 };
 
 }  // namespace saccade
