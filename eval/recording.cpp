@@ -31,14 +31,14 @@ fs::path events_file_of(const fs::path& path) {
   return file;
 }
 
-SensorSize extent(const Events& events) {
+}  // namespace
+
+SensorSize extent(std::span<const Event> events) {
   SensorSize size;
   for (const Event& event : events)
     size = {std::max(size.width, event.x + 1), std::max(size.height, event.y + 1)};
   return size;
 }
-
-}  // namespace
 
 double recording_start_s(const fs::path& path) {
   return seconds_from_ns(read_event_file_info(events_file_of(path)).first_ns);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,9 @@ struct EventRecording {
   SensorSize size;              ///< where none is stated: as large as the events ask for
   bool is_size_stated = false;  ///< by a dataset or an event file
 };
+
+/// The smallest sensor that holds the events.
+[[nodiscard]] SensorSize extent(std::span<const Event> events);
 
 /// Time of its first event [s].
 [[nodiscard]] double recording_start_s(const std::filesystem::path& path);

@@ -205,12 +205,11 @@ RunSummary run_stabilization(const RunRequest& request) {
       found = find_orientations(imu, given_poses, config);
     }
     if (has_events) {
-      EventStream stream = dataset.stream_events(event_times);
+      EventQueue events(dataset.stream_events(event_times));
       if (!progress)
         progress.emplace("stabilize",
-                         stream.expected_count() * static_cast<std::uint64_t>(request.repeat),
+                         events.expected_count() * static_cast<std::uint64_t>(request.repeat),
                          "events");
-      EventQueue events(std::move(stream));
       done = stabilize_events(events, found, config, dataset.camera(),
                               i + 1 == request.repeat ? &folder : nullptr, *progress);
       if (i + 1 == request.repeat) timing.io_s += done.io_s + events.waited_s();

@@ -21,7 +21,7 @@ struct RunTiming {
   std::size_t events = 0;            ///< processed in one repetition
   std::optional<std::size_t> poses;  ///< found in one repetition, by modules that find poses
   double sequence_s = 0;             ///< length of the recording
-  double io_s = 0;                   ///< of reading and writing files, in one repetition
+  double io_s = 0;  ///< for events to be read and handed over, and for writing, in one repetition
   std::vector<std::pair<std::string, double>> stages_s;  ///< of the last repetition
   std::vector<double> latency_ms;  ///< of every pose of the last repetition, where it has one
   std::optional<std::size_t> dropped_events;  ///< in the last repetition, where some may be

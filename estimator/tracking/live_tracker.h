@@ -16,7 +16,8 @@
 namespace saccade {
 
 /// A tracker that is fed with events as they come (TrackerFeed), which are checked. Its poses are
-/// those of `saccade run track`, but for those that a run adds in gaps (report_gaps()).
+/// those of `saccade run track`, those of finish() included, but for what a run adds in gaps
+/// (report_gaps()).
 class LiveTracker {
  public:
   /// The map is that of `dataset`, for tracking from `start_s` to `end_s`. Throws InputError for what
@@ -33,6 +34,9 @@ class LiveTracker {
   /// written before feed() takes them.
   [[nodiscard]] std::span<Event> room(std::size_t count);
   [[nodiscard]] std::vector<TrackedPose> feed();
+
+  /// When no more events come: the poses that can be told with those that wait.
+  [[nodiscard]] std::vector<TrackedPose> finish() { return feed_.finish(); }
 
   /// Events that wait for a pose.
   [[nodiscard]] std::size_t waiting() const { return feed_.waiting(); }

@@ -9,7 +9,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "core/config/config.h"
@@ -53,12 +52,9 @@ std::vector<GreyFrame> load_frame_window(const RunRequest& request, const Datase
                           request.duration_s ? start_s + *request.duration_s : infinity);
 }
 
-/// Where tracking ends, for the map: the time of the last event, which some files tell only when all
-/// of them has been read, where it matters.
-double end_s_of(const RunRequest& request, const TrackConfig& config, const Dataset& dataset,
-                const TrackInput& input) {
-  if (request.duration_s)
-    return request.start_s.value_or(seconds_from_ns(input.start_ns)) + *request.duration_s;
+/// Time of the last measurement [s], by which further views of the map are chosen. Infinity where
+/// there are none to choose: some files of events tell their end only when all of it has been read.
+double last_s_of(const TrackConfig& config, const Dataset& dataset, const TrackInput& input) {
   if (!input.frames.empty()) return seconds_from_ns(input.frames.back().t_ns);
   if (!config.reference.new_view_deg) return std::numeric_limits<double>::infinity();
   return seconds_from_ns(read_event_file_info(dataset.events_file()).last_ns);
@@ -75,9 +71,9 @@ TrackInput load_input(const RunRequest& request, const TrackConfig& config,
     input.events = open_events(request, dataset);
     input.start_ns = input.events->ahead(1).front().t_ns;
   }
-  input.start =
-      load_track_start(config, dataset, request.start_s.value_or(seconds_from_ns(input.start_ns)),
-                       end_s_of(request, config, dataset, input));
+  const RunRecord::Window window =
+      window_of(request, seconds_from_ns(input.start_ns), last_s_of(config, dataset, input));
+  input.start = load_track_start(config, dataset, window.start_s, window.end_s);
   return input;
 }
 
@@ -123,7 +119,7 @@ Tracked track_events(Tracker& tracker, const TrackConfig& config, TrackInput& in
     tracked.end_ns = all.back().t_ns;
   } else {
     TrackerFeed feed(tracker, world, input.start.world_from_camera);
-    const auto append = [&](std::vector<TrackedPose> poses) {
+    const auto append = [&](const std::vector<TrackedPose>& poses) {
       tracked.poses.insert(tracked.poses.end(), poses.begin(), poses.end());
     };
     for (auto events = queue.ahead(1); !events.empty(); events = queue.ahead(1)) {

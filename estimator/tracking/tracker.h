@@ -68,6 +68,7 @@ struct GreyFrame {
 struct Recording {
   std::span<const Event> events = {};
   std::span<const GreyFrame> frames = {};
+  bool is_complete = true;  ///< nothing comes after it; otherwise poses may wait for more
 };
 
 /// Called with the number of measurements done since its last call.
@@ -88,8 +89,8 @@ class Tracker {
   /// Starts anew from a known pose.
   virtual void reset(TimeNs t_ns, const Rigid3& world_from_camera) = 0;
 
-  /// The poses of a recording that begins at the time of reset(); too few events at its end give
-  /// none.
+  /// The poses of a recording that begins at the time of reset(), or goes on after the last event
+  /// that `progress` was told of; too few events at its end give none.
   [[nodiscard]] virtual std::vector<TrackedPose> track(const Recording& recording,
                                                        const TrackProgress& progress = {}) = 0;
 

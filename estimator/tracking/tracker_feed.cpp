@@ -28,30 +28,26 @@ std::span<Event> TrackerFeed::room(std::size_t count) {
   return std::span(events_).subspan(fed_, count);
 }
 
-std::vector<TrackedPose> TrackerFeed::feed(std::span<const Event> events) {
-  std::copy(events.begin(), events.end(), room(events.size()).begin());
-  return feed();
-}
-
 std::vector<TrackedPose> TrackerFeed::feed() {
   if (end_ == fed_) return {};
   if (!has_begun_) tracker_.reset(events_[fed_].t_ns, world_from_camera_);
   has_begun_ = true;
   fed_ = end_;
   if (!is_tracking_ && waiting() < tracker_.first_events()) return {};
-  return track_waiting();
+  return track_waiting(false);
 }
 
 std::vector<TrackedPose> TrackerFeed::finish() {
-  if (is_tracking_ || waiting() == 0) return {};
-  return track_waiting();
+  if (waiting() == 0) return {};
+  return track_waiting(true);
 }
 
-std::vector<TrackedPose> TrackerFeed::track_waiting() {
+std::vector<TrackedPose> TrackerFeed::track_waiting(bool is_complete) {
   is_tracking_ = true;
-  const std::span<const Event> events = std::span(events_).first(end_);
+  const std::span<const Event> events = std::span(events_).first(fed_);
   std::vector<TrackedPose> poses =
-      tracker_.track({.events = events.subspan(used_)}, [&](std::size_t count) { used_ += count; });
+      tracker_.track({.events = events.subspan(used_), .is_complete = is_complete},
+                     [&](std::size_t count) { used_ += count; });
   const ScopedTimer clock(check_s_);
   monitor_.set_recording({.events = events});
   for (TrackedPose& pose : poses) monitor_.judge(pose);

@@ -16,9 +16,9 @@ namespace saccade {
 /// sliding event frames and what takes frames.
 [[nodiscard]] bool is_fed_in_pieces(const TrackConfig& config);
 
-/// Gives a tracker events as they come and judges its poses: the same poses however the events are
-/// divided, but that the probability of a pose may differ where events of one time are. Memory is that
-/// of the events that wait for a pose.
+/// Gives a tracker events as they come and judges its poses: with finish() those of the whole recording
+/// at once, however the events are divided, but that the probability of a pose may differ where
+/// events of one time are. Memory is that of the events that wait for a pose.
 class TrackerFeed {
  public:
   /// `tracker` of `world`, which both outlive the feed; it is reset to the pose by the first event.
@@ -30,8 +30,7 @@ class TrackerFeed {
   /// The poses that can be told with the events in room(), in order of time. A tracker that has to
   /// find contrast thresholds first waits for Tracker::first_events().
   [[nodiscard]] std::vector<TrackedPose> feed();
-  [[nodiscard]] std::vector<TrackedPose> feed(std::span<const Event> events);
-  /// When no more events come: the poses of those that waited for Tracker::first_events().
+  /// When no more events come: the poses that can be told with those that wait.
   [[nodiscard]] std::vector<TrackedPose> finish();
 
   /// Events that wait for a pose.
@@ -40,7 +39,7 @@ class TrackerFeed {
   [[nodiscard]] double check_s() const { return check_s_; }
 
  private:
-  [[nodiscard]] std::vector<TrackedPose> track_waiting();
+  [[nodiscard]] std::vector<TrackedPose> track_waiting(bool is_complete);
 
   Tracker& tracker_;
   Rigid3 world_from_camera_;  ///< at the start

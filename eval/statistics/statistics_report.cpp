@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <utility>
 
 #include "core/error.h"
 #include "core/io/events/event_file.h"
@@ -142,7 +143,8 @@ StreamStatistics statistics_of_recording(const fs::path& path, const RecordingPa
   for (auto events = stream.next(); !events.empty(); events = stream.next()) {
     if (!first) first = events.front();
     last = events.back();
-    if (seconds_from_ns(last->t_ns - first->t_ns) > kLongest_s)
+    // In doubles: of damaged times even the difference may be beyond 64 bits.
+    if (seconds_from_ns(last->t_ns) - seconds_from_ns(first->t_ns) > kLongest_s)
       throw InputError(source.file.string(),
                        "spans more than a day, from " + seconds_text(*first) + " to " +
                            seconds_text(*last) +
@@ -152,7 +154,7 @@ StreamStatistics statistics_of_recording(const fs::path& path, const RecordingPa
   }
   if (!first || first->t_ns == last->t_ns)
     throw InputError(source.file.string(), "holds no two events at different times in this part");
-  StreamStatistics statistics = counter.statistics();
+  StreamStatistics statistics = std::move(counter).statistics();
   statistics.name = source.name;
   return statistics;
 }

@@ -11,7 +11,7 @@
 namespace saccade {
 
 /// Statistics of a dataset folder or an event file, named after that folder or file. The sensor of
-/// an event file is taken to be as large as its events ask for. Throws InputError for what cannot
+/// an event file that does not state it is taken to be as large as its events ask for. Throws InputError for what cannot
 /// be read, and for a part without two events at different times.
 [[nodiscard]] StreamStatistics statistics_of_recording(const std::filesystem::path& path,
                                                        const RecordingPart& part = {});

@@ -10,6 +10,7 @@
 
 #include "core/check.h"
 #include "core/image.h"
+#include "eval/recording.h"
 #include "eval/statistics/pixel_counts.h"
 
 namespace saccade {
@@ -138,14 +139,10 @@ struct StreamCounter::State {
   }
 
   void make_room_for(std::span<const Event> added) {
-    SensorSize needed = size;
-    for (const Event& event : added) {
-      needed.width = std::max(needed.width, event.x + 1);
-      needed.height = std::max(needed.height, event.y + 1);
-    }
-    if (needed.width == size.width && needed.height == size.height) return;
+    const SensorSize needed = extent(added);
+    if (needed.width <= size.width && needed.height <= size.height) return;
     SACCADE_CHECK(!is_size_given);
-    enlarge_to(needed);
+    enlarge_to({std::max(size.width, needed.width), std::max(size.height, needed.height)});
   }
 
   void count_rate(const Event& event) {
@@ -184,7 +181,7 @@ void StreamCounter::add(std::span<const Event> events) {
   }
 }
 
-StreamStatistics StreamCounter::statistics() {
+StreamStatistics StreamCounter::statistics() && {
   State& state = *state_;
   SACCADE_CHECK(state.events >= 2 && state.first_ns < state.last_ns);
   const double duration_s = seconds_from_ns(state.last_ns - state.first_ns);
@@ -211,7 +208,7 @@ StreamStatistics stream_statistics(std::span<const Event> events, SensorSize siz
                                    double rate_bin_s) {
   StreamCounter counter(size, rate_bin_s);
   counter.add(events);
-  return counter.statistics();
+  return std::move(counter).statistics();
 }
 
 }  // namespace saccade

@@ -25,8 +25,8 @@ class StreamCounter {
   /// `events` in EventOrder, none before one that was added earlier, inside the size (contract).
   void add(std::span<const Event> events);
 
-  /// Of all that was added: at least two events at different times (contract). Call once.
-  [[nodiscard]] StreamStatistics statistics();
+  /// Of all that was added: at least two events at different times (contract).
+  [[nodiscard]] StreamStatistics statistics() &&;
 
  private:
   struct State;

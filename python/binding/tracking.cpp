@@ -64,6 +64,15 @@ py::tuple feed(LiveTracker& tracker, const py::array& array) {
   return pose_arrays(poses);
 }
 
+py::tuple finish(LiveTracker& tracker) {
+  std::vector<TrackedPose> poses;
+  {
+    const py::gil_scoped_release release;
+    poses = tracker.finish();
+  }
+  return pose_arrays(poses);
+}
+
 py::array_t<double> map_array(const LiveTracker& tracker) {
   const MapPoints& map = tracker.world().edge_points;
   const Rigid3& world_from_map = tracker.world().intensity_map.world_from_map();
@@ -83,6 +92,7 @@ void bind_tracking(py::module_& module) {
   py::class_<LiveTracker>(module, "LiveTracker")
       .def(py::init(&make_tracker))
       .def("feed", &feed)
+      .def("finish", &finish)
       .def_property_readonly("waiting", &LiveTracker::waiting)
       .def_property_readonly("map", &map_array);
 }

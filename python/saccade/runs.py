@@ -231,6 +231,11 @@ class Poses:
         return len(self.trajectory)
 
 
+def _poses(rows: np.ndarray, evidence: np.ndarray) -> Poses:
+    is_lost, *others = evidence.T
+    return Poses(rows, is_lost != 0, *others)
+
+
 class Tracker:
     """The tracker of ``saccade run track``, fed with events as they come.
 
@@ -253,6 +258,7 @@ class Tracker:
     >>> tracker = saccade.Tracker(data, config="configs/tracking/fast.yaml")  # doctest: +SKIP
     >>> for events in data.events.slices(dt=0.01):                            # doctest: +SKIP
     ...     poses = tracker.feed(events)
+    >>> last = tracker.finish()                                               # doctest: +SKIP
     """
 
     def __init__(self, dataset: Union[Dataset, PathLike], config: Config = None, *,
@@ -265,9 +271,11 @@ class Tracker:
         The interpreter's lock is released during the work.
         """
         data = events.data if isinstance(events, Events) else events
-        rows, evidence = self._native.feed(data)
-        is_lost, *others = evidence.T
-        return Poses(rows, is_lost != 0, *others)
+        return _poses(*self._native.feed(data))
+
+    def finish(self) -> Poses:
+        """When no more events come: the poses that can be told with those that wait, often none."""
+        return _poses(*self._native.finish())
 
     @property
     def waiting(self) -> int:

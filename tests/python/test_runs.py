@@ -7,6 +7,7 @@ from conftest import ROOT
 
 FAST = ROOT / "configs" / "tracking" / "fast.yaml"
 BEST = ROOT / "configs" / "tracking" / "best.yaml"
+POLARITY = ROOT / "configs" / "tracking" / "polarity.yaml"
 
 
 @pytest.fixture(scope="module")
@@ -22,12 +23,13 @@ def test_a_run_has_the_poses_of_the_command(walls, tracked, command, tmp_path):
     assert len(tracked.trajectory) > 50 and tracked.timing["events"] == len(walls.events)
 
 
-@pytest.mark.parametrize("config", [FAST, BEST])
+@pytest.mark.parametrize("config", [FAST, BEST, POLARITY])
 @pytest.mark.parametrize("slices", [{"dt": 0.01}, {"n": 137}, {"dt": 10.0}])
 def test_a_fed_tracker_has_the_poses_of_a_run(walls, config, slices):
     expected = saccade.run("track", walls, config=config)
     tracker = saccade.Tracker(walls, config=config)
     found = [tracker.feed(part) for part in walls.events.slices(**slices)]
+    found.append(tracker.finish())
     rows = np.concatenate([poses.trajectory for poses in found])
     # trajectory.txt holds times with nine decimals; its quaternions are normalised again when they are read.
     assert np.allclose(rows[:, 0], expected.trajectory[:, 0], atol=1e-9, rtol=0)

@@ -1,5 +1,7 @@
 #include "core/io/events/event_queue.h"
 
+#include <algorithm>
+
 #include "core/check.h"
 #include "core/stopwatch.h"
 
@@ -7,6 +9,9 @@ namespace saccade {
 
 std::span<const Event> EventQueue::ahead(std::size_t count) {
   const ScopedTimer waiting(waited_s_);
+  // A vector that grows by itself holds up to three times as much for a moment.
+  const auto expected = static_cast<std::size_t>(expected_count_);
+  if (count > events_.capacity()) events_.reserve(std::min(count, expected));
   while (!is_over_ && events_.size() - begin_ < count) {
     const std::span<const Event> next = stream_.next();
     is_over_ = next.empty();

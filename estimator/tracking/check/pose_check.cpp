@@ -168,7 +168,7 @@ void PoseCheck::project(const Points& points, const Rigid3& camera_from_map) {
   const float* const pz = points.z.data();
   std::int32_t* const cells = cells_.data();
   float* const inverse_depths = inverse_depths_.data();
-  // Without branches: the compiler takes sixteen points at a time.
+  // As cell_at(), without branches: the compiler takes several points at a time.
   for (std::size_t i = 0; i < count; ++i) {
     const float x = r(0, 0) * px[i] + r(0, 1) * py[i] + r(0, 2) * pz[i] + t.x();
     const float y = r(1, 0) * px[i] + r(1, 1) * py[i] + r(1, 2) * pz[i] + t.y();
@@ -204,7 +204,8 @@ void PoseCheck::draw_map(const Rigid3& camera_from_map, PoseEvidence& evidence) 
   const std::size_t stride = stride_for(visible, kProbes);
   std::size_t skipped = stride - 1;
   for (std::size_t i = 0; i < map_.size(); ++i) {
-    if (cells_[i] == kNowhere || ++skipped < stride) continue;
+    if (cells_[i] == kNowhere) continue;
+    if (++skipped < stride) continue;
     skipped = 0;
     probes_.add(map_.x[i], map_.y[i], map_.z[i]);
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/time_search.h"
 #include "estimator/tracking/check/pose_probability.h"
@@ -111,9 +112,9 @@ void judge_poses(const PinholeCamera& camera, const Recording& recording, const 
 }
 
 void report_gaps(TimeNs end_ns, std::vector<TrackedPose>& poses) {
-  std::vector<TrackedPose> all;
+  // Most recordings have no gap, and many poses: they are not copied for nothing.
+  std::vector<TrackedPose> gaps;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    all.push_back(poses[i]);
     const TimeNs next_ns = i + 1 < poses.size() ? poses[i + 1].t_ns : end_ns;
     const double gap_s = seconds_from_ns(next_ns - poses[i].t_ns);
     const double depth_m = poses[i].evidence.depth_m;
@@ -122,14 +123,16 @@ void report_gaps(TimeNs end_ns, std::vector<TrackedPose>& poses) {
     const double rate = rate_before(poses, i, depth_m);
     const double lost_after_s = std::max(kShortestGap_s, kGapMotion / rate);
     if (!(lost_after_s < gap_s)) continue;
-    TrackedPose lost = poses[i];
+    TrackedPose& lost = gaps.emplace_back(poses[i]);
     lost.t_ns = lost.first_ns = lost.last_ns = poses[i].t_ns + ns_from_seconds(lost_after_s);
     lost.status = TrackStatus::kLost;
     lost.is_gap = true;
     lost.probability = std::min(lost.probability, probability_after(lost_after_s * rate));
-    all.push_back(lost);
   }
-  poses = std::move(all);
+  if (gaps.empty()) return;
+  poses.insert(poses.end(), gaps.begin(), gaps.end());
+  std::inplace_merge(poses.begin(), poses.end() - std::ssize(gaps), poses.end(),
+                     [](const TrackedPose& a, const TrackedPose& b) { return a.t_ns < b.t_ns; });
 }
 
 std::optional<double> lost_since_s(std::span<const TrackedPose> poses) {

@@ -26,16 +26,17 @@ class EdgeFallback {
     edges_.reset(t_ns, world_from_camera, kSigma_px);
   }
 
-  /// Follows the first frames of `events`, fewer where the recording ends, and appends their poses,
-  /// all of them lost where they do not fit. Returns the number of events; 0, and nothing is
-  /// appended, where not even one frame is left.
-  std::size_t follow(std::span<const Event> events, std::vector<TrackedPose>& poses,
+  /// Follows the first frames of a recording's events and appends their poses, all of them lost
+  /// where they do not fit. Returns the number of events; 0, and nothing is appended, where there
+  /// are fewer frames and more events come, or where not even one frame is left.
+  std::size_t follow(const Recording& recording, std::vector<TrackedPose>& poses,
                      TrackTiming& timing) {
     constexpr std::size_t kFrames = 6;
     const std::size_t frame = edges_.next_frame_events();
-    const std::size_t count = std::min(kFrames, events.size() / frame) * frame;
-    if (count == 0) return 0;
-    follow_all(events.first(count), poses, timing);
+    const std::size_t frames = std::min(kFrames, recording.events.size() / frame);
+    if (frames == 0 || (frames < kFrames && !recording.is_complete)) return 0;
+    const std::size_t count = frames * frame;
+    follow_all(recording.events.first(count), poses, timing);
     return count;
   }
 

@@ -99,22 +99,22 @@ void IntensityTracker::restart_pixels(float sigma) {
 std::vector<TrackedPose> IntensityTracker::track(const Recording& recording,
                                                  const TrackProgress& progress) {
   Poses poses;
-  std::span<const Event> events = recording.events;
-  if (!knows_contrast_ && !has_learned_) learn_contrast(events);
-  while (!events.empty()) {
-    const std::optional<std::size_t> done = track_next(events, poses);
+  Recording rest = recording;
+  if (!knows_contrast_ && !has_learned_) learn_contrast(rest.events);
+  while (!rest.events.empty()) {
+    const std::optional<std::size_t> done = track_next(rest, poses);
     if (!done) break;
-    events = events.subspan(*done);
+    rest.events = rest.events.subspan(*done);
     if (progress) progress(*done);
   }
   return poses;
 }
 
-std::optional<std::size_t> IntensityTracker::track_next(std::span<const Event> events,
-                                                        Poses& poses) {
+std::optional<std::size_t> IntensityTracker::track_next(const Recording& recording, Poses& poses) {
+  const std::span<const Event> events = recording.events;
   std::size_t done = 0;
   if (is_lost_) {
-    done = relocate(events, poses);
+    done = relocate(recording, poses);
     if (done == 0) return std::nullopt;
   } else {
     const std::size_t count = next_batch(events);
@@ -277,12 +277,12 @@ Rigid3 IntensityTracker::candidate_pose(TimeNs t_ns) const {
   return lost_at_ * Rigid3::exp(offset);
 }
 
-std::size_t IntensityTracker::relocate(std::span<const Event> events, Poses& poses) {
-  const TimeNs t_ns = events.front().t_ns;
+std::size_t IntensityTracker::relocate(const Recording& recording, Poses& poses) {
+  const TimeNs t_ns = recording.events.front().t_ns;
   ++candidates_tried_;
   fallback_.reset_near(t_ns, world_from_map_ * candidate_pose(t_ns));
   const std::size_t known = poses.size();
-  const std::size_t done = fallback_.follow(events, poses, timing_);
+  const std::size_t done = fallback_.follow(recording, poses, timing_);
   if (done == 0) --candidates_tried_;  // it is tried when there are more events
   for (std::size_t i = known; i < poses.size(); ++i) poses[i].status = TrackStatus::kLost;
   if (done == 0 || !fallback_.fits()) return done;

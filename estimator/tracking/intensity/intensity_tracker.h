@@ -56,10 +56,10 @@ class IntensityTracker : public Tracker {
                   const TrackedPose& after);
   void start_at(TimeNs t_ns, const Rigid3& map_from_camera);
   /// Tracks the next batch, or searches; how many events that took, nullopt: too few are left.
-  [[nodiscard]] std::optional<std::size_t> track_next(std::span<const Event> events, Poses& poses);
+  [[nodiscard]] std::optional<std::size_t> track_next(const Recording& recording, Poses& poses);
   [[nodiscard]] std::size_t events_before_gap(std::span<const Event> events) const;
   [[nodiscard]] bool fits_worse(const Sums& sums, std::size_t events);
-  std::size_t relocate(std::span<const Event> events, Poses& poses);
+  std::size_t relocate(const Recording& recording, Poses& poses);
   void lose();
   [[nodiscard]] Rigid3 candidate_pose(TimeNs t_ns) const;
   void restart_pixels(float sigma);

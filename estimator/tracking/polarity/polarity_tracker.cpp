@@ -60,22 +60,23 @@ void PolarityTracker::reset(TimeNs t_ns, const Rigid3& world_from_camera) {
 std::vector<TrackedPose> PolarityTracker::track(const Recording& recording,
                                                 const TrackProgress& progress) {
   Poses poses;
-  std::span<const Event> events = recording.events;
+  Recording rest = recording;
   const auto count = static_cast<std::size_t>(options_.events);
-  while (events.size() >= count) {
+  while (rest.events.size() >= count) {
     std::size_t done = count;
-    if (by_edges_ || !track_frame(events.first(count), poses)) {
-      done = follow_edges(events, poses);
+    if (by_edges_ || !track_frame(rest.events.first(count), poses)) {
+      by_edges_ = true;  // also where they have to wait
+      done = follow_edges(rest, poses);
       if (done == 0) break;  // too few events are left
     }
-    events = events.subspan(done);
+    rest.events = rest.events.subspan(done);
     if (progress) progress(done);
   }
   return poses;
 }
 
-std::size_t PolarityTracker::follow_edges(std::span<const Event> events, Poses& poses) {
-  const std::size_t done = fallback_.follow(events, poses, timing_);
+std::size_t PolarityTracker::follow_edges(const Recording& recording, Poses& poses) {
+  const std::size_t done = fallback_.follow(recording, poses, timing_);
   if (done == 0) return 0;
   by_edges_ = !fallback_.fits();
   motion_ = fallback_.motion();

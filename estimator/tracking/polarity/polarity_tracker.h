@@ -51,7 +51,7 @@ class PolarityTracker : public Tracker {
   using Sums = IncrementResidualBatch::Sums;
   using Poses = std::vector<TrackedPose>;
 
-  std::size_t follow_edges(std::span<const Event> events, Poses& poses);
+  std::size_t follow_edges(const Recording& recording, Poses& poses);
   void draw_view(const Rigid3& map_from_camera);
   [[nodiscard]] bool track_frame(std::span<const Event> events, Poses& poses);
   [[nodiscard]] PoseEstimate<Sums> align(const PosePrediction& predicted);

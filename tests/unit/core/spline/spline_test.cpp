@@ -333,7 +333,7 @@ TEST(SplineSmooth, ConvergesWithKnotsFarTooCoarseForTheMotion) {
 
 TEST(SplineSmooth, GivesASplineOfRotationsThatAreNoMotionAtAll) {
   // The path of a method that is lost: rotations that stay, drift, and jump by up to half a turn.
-  for (const double turn_rad : {0.3, 1.0, 2.0, 3.1}) {
+  for (const double rotation_rad : {0.3, 1.0, 2.0, 3.1}) {
     for (std::uint64_t seed = 0; seed < 12; ++seed) {
       const Random random(seed);
       std::vector<StampedPose> poses;
@@ -342,20 +342,20 @@ TEST(SplineSmooth, GivesASplineOfRotationsThatAreNoMotionAtAll) {
         const Vector3d axis =
             Vector3d(random.normal(0, i), random.normal(1, i), random.normal(2, i)).normalized();
         const bool jumps = random.uniform(3, i) < 0.2;
-        rotation = rotation * so3_exp((jumps ? turn_rad : 1e-3) * axis);
+        rotation = rotation * so3_exp((jumps ? rotation_rad : 1e-3) * axis);
         poses.push_back({0.001 * static_cast<double>(i), {rotation, axis}});
       }
       const Spline spline = Spline::smooth(poses, 0.025);
       // No worse than one rotation for all would be, which is far from a fit and still finite.
       double squares = 0, squares_of_one = 0;
       for (const StampedPose& p : poses) {
-        const auto off_by = [&](const Eigen::Quaterniond& found) {
+        const auto error_of = [&](const Eigen::Quaterniond& found) {
           return angle_between(found, p.world_from_camera.rotation());
         };
-        squares += std::pow(off_by(spline.pose(p.t_s).rotation()), 2);
-        squares_of_one += std::pow(off_by(Eigen::Quaterniond::Identity()), 2);
+        squares += std::pow(error_of(spline.pose(p.t_s).rotation()), 2);
+        squares_of_one += std::pow(error_of(Eigen::Quaterniond::Identity()), 2);
       }
-      EXPECT_LT(squares, squares_of_one) << turn_rad << " rad, seed " << seed;
+      EXPECT_LT(squares, squares_of_one) << rotation_rad << " rad, seed " << seed;
     }
   }
 }

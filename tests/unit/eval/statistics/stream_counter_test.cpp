@@ -3,9 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "core/random.h"
 
@@ -122,7 +123,7 @@ TEST(StreamCounter, CountsTheSameInPiecesAndWithoutASize) {
     counter.add(rest.first(count));
     rest = rest.subspan(count);
   }
-  const StreamStatistics pieces = counter.statistics();
+  const StreamStatistics pieces = std::move(counter).statistics();
   EXPECT_EQ(pieces.pixels.ascending_hz, whole.pixels.ascending_hz);
   EXPECT_EQ(pieces.pixels.hot_pixels, whole.pixels.hot_pixels);
   EXPECT_EQ(pieces.on_fraction, whole.on_fraction);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "estimator/tracking/check/pose_monitor.h"
 #include "estimator/tracking/map_extraction.h"
 #include "estimator/tracking/track_config.h"
+#include "estimator/tracking/tracker_feed.h"
 #include "tests/unit/estimator/tracking/corner_recording.h"
 
 namespace saccade {
@@ -106,7 +108,7 @@ std::vector<TrackedPose> judged_poses(const TrackMethod& method, const PlanarWor
       config::parse("{method: " + std::string(method.name) + "}", "t.yaml"));
   const TrackWorld world = map_of(config, method, mapped, what.motion(0));
   const std::unique_ptr<Tracker> tracker = method.make(config, world);
-  tracker->reset(0, what.motion(0));
+  tracker->reset(method.takes_frames ? 0 : what.events.front().t_ns, what.motion(0));
   const Recording recording =
       method.takes_frames ? Recording{.frames = what.frames} : Recording{.events = what.events};
   std::vector<TrackedPose> poses = tracker->track(recording);
@@ -157,6 +159,41 @@ TEST_P(LossReport, ComesWithin50Ms) {
     if (seconds_from_ns(pose.last_ns) < kBreak_s) {
       EXPECT_NE(pose.status, TrackStatus::kLost) << seconds_from_ns(pose.t_ns);
     }
+}
+
+TEST_P(LossReport, IsTheSameForEventsInPieces) {
+  const auto& [method, name] = GetParam();
+  if (method.takes_frames) GTEST_SKIP() << "takes frames, which come at once";
+  const LosingRecording& what = recording_of(name);
+  const std::vector<TrackedPose> whole = judged_poses(method, resolved_world(), what);
+  const auto config = config::read<TrackConfig>(
+      config::parse("{method: " + std::string(method.name) + "}", "t.yaml"));
+  const TrackWorld world = map_of(config, method, resolved_world(), what.motion(0));
+  for (const std::size_t size : {137U, 4001U}) {
+    const std::unique_ptr<Tracker> tracker = method.make(config, world);
+    TrackerFeed feed(*tracker, world, what.motion(0));
+    std::vector<TrackedPose> poses;
+    const auto append = [&](const std::vector<TrackedPose>& found) {
+      poses.insert(poses.end(), found.begin(), found.end());
+    };
+    for (std::span<const Event> rest = what.events; !rest.empty();) {
+      // As a stream gives them: those of one time together.
+      std::size_t count = std::min(size, rest.size());
+      while (count < rest.size() && rest[count].t_ns == rest[count - 1].t_ns) ++count;
+      std::ranges::copy(rest.first(count), feed.room(count).begin());
+      append(feed.feed());
+      rest = rest.subspan(count);
+    }
+    append(feed.finish());
+    report_gaps(ns_from_seconds(what.end_s), poses);
+    ASSERT_EQ(poses.size(), whole.size()) << "pieces of " << size;
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+      ASSERT_EQ(poses[i].last_ns, whole[i].last_ns) << i;
+      ASSERT_EQ(poses[i].status, whole[i].status) << i;
+      ASSERT_EQ(poses[i].probability, whole[i].probability) << i;
+      ASSERT_EQ(poses[i].world_from_camera.translation(), whole[i].world_from_camera.translation());
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, LossReport,

@@ -362,15 +362,32 @@ TEST(EdgeFallback, HandsOverThePoseOfItsLastFrame) {
   EdgeFallback fallback(tracker_from(accurate()));
   std::vector<TrackedPose> poses(1);  // of before
   TrackTiming timing;
-  const std::size_t done = fallback.follow(recording().events, poses, timing);
+  const std::size_t done = fallback.follow({recording().events}, poses, timing);
   EXPECT_GT(done, 0U);
   EXPECT_EQ(poses.size(), 7U);
   EXPECT_TRUE(fallback.fits());
   EXPECT_EQ(poses.back().status, TrackStatus::kOk);
   EXPECT_LT(error_px(poses.back()), 1.5);
   EXPECT_GT(timing.align_s, 0);
-  EXPECT_EQ(fallback.follow(std::span(recording().events).first(10), poses, timing), 0U);
+  EXPECT_EQ(fallback.follow({std::span(recording().events).first(10)}, poses, timing), 0U);
   EXPECT_EQ(poses.size(), 7U) << "too few events give no pose";
+}
+
+TEST(EdgeFallback, TakesFewerFramesAtTheEndAlone) {
+  EdgeFallback fallback(tracker_from(accurate()));
+  std::vector<TrackedPose> poses;
+  TrackTiming timing;
+  Recording part{recording().events};
+  const std::size_t all = fallback.follow(part, poses, timing);
+  fallback.reset(0, corner_motion(0));
+  poses.clear();
+  part.events = part.events.first(all / 2);
+  part.is_complete = false;
+  EXPECT_EQ(fallback.follow(part, poses, timing), 0U);
+  EXPECT_TRUE(poses.empty());
+  part.is_complete = true;
+  EXPECT_EQ(fallback.follow(part, poses, timing), all / 2);
+  EXPECT_EQ(poses.size(), 3U);
 }
 
 TEST(EdgeFallback, PosesThatDoNotFitAreLost) {
@@ -378,7 +395,7 @@ TEST(EdgeFallback, PosesThatDoNotFitAreLost) {
   fallback.reset_near(0, corner_motion(0) * Rigid3(so3_exp({0, 3, 0}), Eigen::Vector3d::Zero()));
   std::vector<TrackedPose> poses;
   TrackTiming timing;
-  EXPECT_GT(fallback.follow(recording().events, poses, timing), 0U);
+  EXPECT_GT(fallback.follow({recording().events}, poses, timing), 0U);
   EXPECT_FALSE(fallback.fits());
   testing::expect_lost_but_finite(poses);
 }
