@@ -75,7 +75,8 @@ constexpr double kThinnestVein = 1;
 /// Who draws random numbers; lattices of noise follow from kNoise on, one per octave.
 enum TextureStream : std::uint64_t { kBackground, kShapes, kLines, kText, kLetters, kNoise = 16 };
 
-/// Draws in a row that belong to one item of a stream.
+/// Draws in a row that belong to one item of a stream. Each draw is a statement of its own: in which
+/// order a call evaluates its arguments is the compiler's choice, and two make two textures.
 class Dice {
  public:
   Dice(const Random& random, std::uint64_t stream, std::uint64_t item)
@@ -91,7 +92,9 @@ class Dice {
   /// A unit vector, by rejection: square roots give the same bits everywhere, sines do not.
   Eigen::Vector2d direction() {
     for (int i = 0; i < 16; ++i) {
-      const Eigen::Vector2d v(2 * uniform() - 1, 2 * uniform() - 1);
+      const double y = 2 * uniform() - 1;
+      const double x = 2 * uniform() - 1;
+      const Eigen::Vector2d v(x, y);
       if (v.squaredNorm() <= 1 && v.squaredNorm() > 0.01) return v.normalized();
     }
     return Eigen::Vector2d::UnitX();
@@ -247,8 +250,9 @@ class Generator {
     for (std::uint64_t i = 0; i < count; ++i) {
       Dice dice(random_, kLines, i);
       const Eigen::Vector2f center = position(dice, 0);
-      const Eigen::Vector2f half =
-          (0.5 * scale_ * dice.between(options_.lines.length_m) * dice.direction()).cast<float>();
+      const Eigen::Vector2d direction = dice.direction();
+      const double length_m = dice.between(options_.lines.length_m);
+      const Eigen::Vector2f half = (0.5 * scale_ * length_m * direction).cast<float>();
       add_stroke(center - half, center + half, options_.lines.width_m * scale_, log_albedo(dice));
     }
   }
@@ -277,12 +281,17 @@ class Generator {
     Dice dice(random_, kLetters, item);
     if (dice.uniform() < 0.15) return;
     const auto node = [&] {
-      const Eigen::Vector2d lattice(0.5 * dice.between(std::array{0, 1}),
-                                    0.5 * dice.between(std::array{0, 2}));
+      const double y = 0.5 * dice.between(std::array{0, 2});
+      const double x = 0.5 * dice.between(std::array{0, 1});
+      const Eigen::Vector2d lattice(x, y);
       return Eigen::Vector2f(corner + (height * lattice).cast<float>());
     };
     const int strokes = dice.between(std::array{2, 4});
-    for (int i = 0; i < strokes; ++i) add_stroke(node(), node(), 0.14 * height, level);
+    for (int i = 0; i < strokes; ++i) {
+      const Eigen::Vector2f to = node();
+      const Eigen::Vector2f from = node();
+      add_stroke(from, to, 0.14 * height, level);
+    }
   }
 
   void add_noise() {
