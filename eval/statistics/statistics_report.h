@@ -11,8 +11,9 @@
 namespace saccade {
 
 /// Statistics of a dataset folder or an event file, named after that folder or file. The sensor of
-/// an event file that does not state it is taken to be as large as its events ask for. Throws InputError for what cannot
-/// be read, and for a part without two events at different times.
+/// an event file that does not state it is taken to be as large as its events ask for. Throws
+/// InputError for what cannot be read, for a part without two events at different times, and for
+/// one that spans more than a day.
 [[nodiscard]] StreamStatistics statistics_of_recording(const std::filesystem::path& path,
                                                        const RecordingPart& part = {});
 

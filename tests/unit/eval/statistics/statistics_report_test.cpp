@@ -52,6 +52,16 @@ TEST_F(StatisticsReport, APartOfARecording) {
   EXPECT_EQ(statistics_of_recording(file, {.start_s = 10.002, .duration_s = 0.005}).events, 2U);
 }
 
+TEST_F(StatisticsReport, RefusesMoreThanADayHoweverFarTheTimesAreApart) {
+  TemporaryFolder folder;
+  const auto refused = [&](const std::string& name, const std::string& text) {
+    EXPECT_THROW((void)statistics_of_recording(folder.write(name, text)), InputError) << name;
+  };
+  refused("day.txt", "0.001 3 4 1\n86401 5 6 0\n");
+  // The difference is beyond 64 bits of nanoseconds.
+  refused("all.txt", "-9000000000 3 4 1\n9000000000 5 6 0\n");
+}
+
 TEST_F(StatisticsReport, RefusesWhatHasNoTwoEvents) {
   TemporaryFolder folder;
   EXPECT_THROW((void)statistics_of_recording(folder.path() / "none"), InputError);
