@@ -9,6 +9,7 @@
 #include "core/time_search.h"
 #include "estimator/depth/sweep/sweep_depth.h"
 #include "estimator/edges/least_squares/robust_spread.h"
+#include "estimator/odometry/view_turn.h"
 #include "estimator/reconstruction/surface/point_surface.h"
 
 namespace saccade {
@@ -130,7 +131,7 @@ Mapping Mapper::map_once(std::span<const Event> events, const PathEstimate& path
   Mapping mapping;
   Keyframe& keyframe = mapping.keyframe;
   ViewWindow window;
-  window.events = newest(within(events, path.poses));
+  window.events = newest(within(events, path.poses), path.poses);
   if (window.events.empty()) return mapping;
   const Trajectory smooth = smoothed(path.poses, window.events);
   Trajectory adjusted = smooth;
@@ -172,6 +173,40 @@ Mapping Mapper::map_once(std::span<const Event> events, const PathEstimate& path
   if (edges)
     mapping.edges = {{window.events.begin(), window.events.end()}, std::move(*edges), options_};
   return mapping;
+}
+
+double Mapper::common_depth(std::span<const Event> events, const PathEstimate& path,
+                            double assumed_m) const {
+  // Twice the information of the assumption is the most that an edge has a say by: few edges next to
+  // the camera say more than all others.
+  constexpr double kMostInformation = 2;
+  constexpr double kSigma = RayDepthOptions::kAssumedSigma;
+  ViewWindow window;
+  window.events = newest(within(events, path.poses), path.poses);
+  if (window.events.empty()) return assumed_m;
+  const Trajectory smooth = smoothed(path.poses, window.events);
+  window.trajectory = &smooth;
+  window.reference_s =
+      (seconds_from_ns(window.events.front().t_ns) + seconds_from_ns(window.events.back().t_ns)) /
+      2;
+  MappingOptions assuming = relaxed(options_, kMostRelaxed);
+  assuming.depth.rays.assumed_inverse_depth = 1 / assumed_m;
+  const WindowEdgels found = Mapper(assuming, camera_).rays().find_edgels(window);
+  std::vector<WeightedValue> inverse;  // relative to the assumed one
+  for (const FittedEdgel& fitted : found.edges) {
+    // What the events say, without the assumption that was added to it.
+    const double assumption = 1 / (kSigma * kSigma);
+    const double sigma = static_cast<double>(fitted.sigma) * assumed_m;
+    const double all = 1 / (sigma * sigma);
+    const double own = all - assumption;
+    if (own <= 0) continue;
+    const double value = static_cast<double>(fitted.edge.inverse_depth) * assumed_m;
+    inverse.push_back(
+        {(value * all - assumption) / own, std::min(own, kMostInformation * assumption)});
+  }
+  const double median = weighted_median(inverse);
+  const DepthLimits& limits = options_.depth.limits;
+  return median > 0 ? std::clamp(assumed_m / median, limits.near_m, limits.far_m) : assumed_m;
 }
 
 void Mapper::refit(const Trajectory& path, const PathEstimate& estimate, Mapping& mapping) const {
@@ -228,11 +263,20 @@ std::optional<WindowEdgels> Mapper::adjust_path(ViewWindow& window, Trajectory& 
   return edges;
 }
 
-std::span<const Event> Mapper::newest(std::span<const Event> events) const {
+std::span<const Event> Mapper::newest(std::span<const Event> events, const Trajectory& path) const {
   events = events.last(std::min(events.size(), static_cast<std::size_t>(options_.events)));
   if (events.empty()) return events;
-  return events.subspan(
+  events = events.subspan(
       count_before(events, events.back().t_ns - ns_from_seconds(options_.duration_s)));
+  if (options_.turn <= 0) return events;
+  const double most = options_.turn * angle_of_view(camera_);
+  const Rigid3 last = path.at_clamped(seconds_from_ns(events.back().t_ns));
+  const std::span<const StampedPose> poses = path.poses();
+  for (std::size_t i = poses.size(); i-- > 0;)
+    if (view_turn(poses[i].world_from_camera, last) > most)
+      return events.subspan(
+          std::min(events.size() - 1, count_before(events, ns_from_seconds(poses[i].t_s))));
+  return events;
 }
 
 Trajectory Mapper::smoothed(const Trajectory& poses, std::span<const Event> events) const {

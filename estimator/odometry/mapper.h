@@ -19,8 +19,11 @@ struct MappingOptions {
   enum class Edges { kGradient, kDepth };
   enum class View { kMiddle, kEnd };
 
-  int events = 200000;            ///< N_map: at most so many, the newest
-  double duration_s = 0.4;        ///< ... and of at most so long
+  int events = 200000;      ///< N_map: at most so many, the newest
+  double duration_s = 0.4;  ///< ... and of at most so long
+  /// ... and of no time in which the view was turned by more than this part of its angle from where
+  /// it is at the end; 0: of any. What a fast turn has left is of no use for what comes.
+  double turn = 0;
   int depth_events = 1000000000;  ///< of kDepth: depth is found from about so many of them
   View view = View::kEnd;         ///< where in its events the view lies
   Edges edges = Edges::kDepth;    ///< steep pixels of the reconstruction, or the points with depth
@@ -100,6 +103,12 @@ class Mapper {
   /// Of DepthConfig's method rays and Edges::kDepth.
   void renew(std::span<const Event> events, const Trajectory& poses, Keyframe& keyframe) const;
 
+  /// The depth that the edges of the newest events have in common, where hardly any has one that can
+  /// be told by itself: the median of what their events say beside the assumption of `assumed_m`,
+  /// each by its information. `assumed_m` where no edge says anything.
+  [[nodiscard]] double common_depth(std::span<const Event> events, const PathEstimate& path,
+                                    double assumed_m) const;
+
   [[nodiscard]] RayDepth rays() const;
 
   /// The image of a keyframe that was tracked without one; `events` contain its own.
@@ -107,7 +116,8 @@ class Mapper {
 
  private:
   [[nodiscard]] Mapping map_once(std::span<const Event> events, const PathEstimate& path) const;
-  [[nodiscard]] std::span<const Event> newest(std::span<const Event> events) const;
+  [[nodiscard]] std::span<const Event> newest(std::span<const Event> events,
+                                              const Trajectory& path) const;
   [[nodiscard]] Trajectory smoothed(const Trajectory& poses, std::span<const Event> events) const;
   [[nodiscard]] double sweep_depth(const ViewWindow& window) const;
   /// Adjusts `path`, which the window points to; the edges that it was adjusted by, if it was.

@@ -10,6 +10,7 @@
 #include "core/stopwatch.h"
 #include "core/time_search.h"
 #include "estimator/edges/least_squares/path_covariance.h"
+#include "estimator/odometry/view_turn.h"
 #include "estimator/tracking/pose_output.h"
 
 namespace saccade {
@@ -276,8 +277,14 @@ bool Odometry::has_doubled_baseline() const {
          doubling_m() < options_.keyframe.distance * typical_depth_m_;
 }
 
+bool Odometry::has_turned() const {
+  return options_.keyframe.turn > 0 &&
+         view_turn(last_keyframe_.world_from_camera, path_.back().world_from_camera) >=
+             options_.keyframe.turn * angle_of_view(camera_);
+}
+
 bool Odometry::wants_keyframe() const {
-  if (has_doubled_baseline()) return true;
+  if (has_doubled_baseline() || has_turned()) return true;
   double interval_s = options_.keyframe.interval_s;
   double distance_m = options_.keyframe.distance * typical_depth_m_;  // d_kf
   const double quarter_s = (path_.back().t_s - path_.front().t_s) / 4;
@@ -345,6 +352,8 @@ void Odometry::end_mapping(double now_s, OdometryResult& result) {
   // Too few edges make no keyframe: the map of before goes on.
   if (keyframe.edges.size() < Mapper::kMinEdges) return;
   typical_depth_m_ = keyframe.typical_depth_m;
+  // A view that turns back would see more of what was before: keyframes stay in order.
+  mapped_from_s_ = std::max(mapped_from_s_, keyframe.start_s - 1e-9);
   fixed_until_s_ = std::max(fixed_until_s_, keyframe.end_s - options_.keyframe.active_window_s);
   apply_adjusted_poses(mapping);
   move_keyframes(mapping.poses.front().t_s);

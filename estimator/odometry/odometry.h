@@ -33,6 +33,9 @@ struct KeyframeOptions {
   /// rest on, each time for twice as much, until that is `distance`. The interval does not count it,
   /// and is at most a quarter of the time since the start.
   bool doubles_baseline = false;
+  /// A keyframe is also made where the camera has turned by this part of its angle of view, whatever
+  /// the interval: else a fast turn leaves the map. 0: never.
+  double turn = 0;
   double handover_s = 0;         ///< from its newest event to the last that is tracked without it
   double active_window_s = 0.1;  ///< poses of its last seconds may still change with the next
   int active = 1;                ///< K: at most so many make up the map
@@ -149,6 +152,7 @@ class Odometry {
   [[nodiscard]] double moved_m() const;  ///< since the last keyframe was begun
   [[nodiscard]] double doubling_m() const;
   [[nodiscard]] bool has_doubled_baseline() const;
+  [[nodiscard]] bool has_turned() const;
   [[nodiscard]] bool wants_keyframe() const;
   [[nodiscard]] bool is_due(double now_s) const;
   [[nodiscard]] Mapping map(std::span<const Event> events, const PathEstimate& path);

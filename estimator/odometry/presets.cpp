@@ -32,6 +32,7 @@ OdometryOptions edges() {
   options.keyframe = {.distance = 0.05,
                       .interval_s = 0.1,
                       .doubles_baseline = true,
+                      .turn = 0.25,
                       .active_window_s = 0.4,
                       .active = 3};
   options.tracker = tracking_by_keyframes(0.1);
@@ -41,6 +42,7 @@ OdometryOptions edges() {
   // The window is 0.65 s long however many events that is.
   mapping.events = 2000000;
   mapping.duration_s = 0.65;
+  mapping.turn = 0.5;
   mapping.view = MappingOptions::View::kMiddle;
   mapping.edges = MappingOptions::Edges::kDepth;
   mapping.min_edges = 600;

@@ -22,6 +22,22 @@ template <class T>
   return *middle;
 }
 
+struct WeightedValue {
+  double value = 0;
+  double weight = 0;  ///< >= 0
+};
+
+/// The value up to which half of the weight lies, of values that are reordered; 0 for none.
+[[nodiscard]] inline double weighted_median(std::vector<WeightedValue>& values) {
+  std::sort(values.begin(), values.end(),
+            [](const WeightedValue& a, const WeightedValue& b) { return a.value < b.value; });
+  double rest = 0;
+  for (const WeightedValue& value : values) rest += value.weight / 2;
+  for (const WeightedValue& value : values)
+    if ((rest -= value.weight) <= 0) return value.value;
+  return 0;
+}
+
 /// Deviation of a Gaussian with the median of these absolute values, which are reordered.
 [[nodiscard]] inline double gaussian_sigma(std::vector<double>& absolute) {
   return 1.4826 * median_of(absolute);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "estimator/odometry/start/extrapolated_path.h"
+#include "estimator/odometry/view_turn.h"
 #include "estimator/run/view_windows.h"
 
 namespace saccade {
@@ -23,9 +24,19 @@ Trajectory with_given_poses(const Trajectory& path, const PathEstimate& start) {
   return Trajectory(std::move(poses));
 }
 
+/// Extrapolated poses turn the view by this part of its angle at most: a fast turn does not keep its
+/// velocity, and what is seen meanwhile leaves the view.
+constexpr double kMostTurn = 0.25;
+
 double longest_path_s(std::span<const Event> events, const PathEstimate& start,
-                      const FirstMapOptions& options) {
-  return std::min(options.window_s, seconds_from_ns(events.back().t_ns) - start.poses.start_s());
+                      const PinholeCamera& camera, const FirstMapOptions& options) {
+  const double longest_s =
+      std::min(options.window_s, seconds_from_ns(events.back().t_ns) - start.poses.start_s());
+  const double rate_rad_s = view_turn(start.poses.at_clamped(start.poses.end_s() - kPoseSpacing_s),
+                                      start.poses.poses().back().world_from_camera) /
+                            kPoseSpacing_s;
+  const double given_s = start.poses.end_s() - start.poses.start_s();
+  return std::min(longest_s, given_s + kMostTurn * angle_of_view(camera) / rate_rad_s);
 }
 
 constexpr double kPathGrowth = 1.15;  ///< of the path, from round to round
@@ -33,11 +44,11 @@ constexpr double kPathGrowth = 1.15;  ///< of the path, from round to round
 /// Where the motion is a rotation, or nearly none, no depth is found, and the one that is assumed
 /// matters little. The path is extrapolated only for as long as its events show too few edges.
 FirstMap map_of_assumed_depth(std::span<const Event> events, const PathEstimate& start,
-                              const Mapper& mapper, const FirstMapOptions& options,
-                              const Gyroscope& gyroscope) {
+                              const Mapper& mapper, const PinholeCamera& camera,
+                              const FirstMapOptions& options, const Gyroscope& gyroscope) {
   FirstMap first{start, {}};
   const double start_s = start.poses.start_s();
-  const double longest_s = longest_path_s(events, start, options);
+  const double longest_s = longest_path_s(events, start, camera, options);
   // In the middle of what may be, as ratios count.
   const DepthLimits& limits = options.refinement.limits;
   first.path.typical_depth_m = std::sqrt(limits.near_m * limits.far_m);
@@ -51,6 +62,24 @@ FirstMap map_of_assumed_depth(std::span<const Event> events, const PathEstimate&
   }
 }
 
+/// The depth at which edges are assumed whose depth the given poses do not tell: `otherwise`, if the
+/// edges do not say together that it is wrong by more than is assumed anyway.
+double assumed_depth_m(std::span<const Event> events, const PathEstimate& start,
+                       const Mapper& mapper, double near_m, double otherwise_m) {
+  // From near on: the window over which edges are matched is short there, so that they are matched
+  // right. A step goes a third to all of the way.
+  constexpr int kMostSteps = 6;
+  constexpr double kNearer = 4, kSettled = 0.02;
+  double depth_m = std::max(near_m, otherwise_m / kNearer);
+  for (int i = 0; i < kMostSteps; ++i) {
+    const double before_m = depth_m;
+    depth_m = mapper.common_depth(events, start, depth_m);
+    if (std::abs(depth_m - before_m) < kSettled * before_m) break;
+  }
+  const double relative = otherwise_m / depth_m;  // of the inverse depths
+  return std::abs(relative - 1) < RayDepthOptions::kAssumedSigma ? otherwise_m : depth_m;
+}
+
 }  // namespace
 
 FirstMap first_map(std::span<const Event> events, const PathEstimate& start, const Mapper& mapper,
@@ -59,9 +88,19 @@ FirstMap first_map(std::span<const Event> events, const PathEstimate& start, con
   FirstMap first{start, mapper.map(within(events, start.poses), start)};
   const auto is_enough = [&] { return first.mapping.keyframe.edges.size() >= options.min_edges; };
   if (is_enough() || start.given_until_s == kNoGivenPoses || events.empty()) return first;
+  const DepthLimits& limits = options.refinement.limits;
+  // In the middle of what may be, as ratios count.
+  const double otherwise_m = first.mapping.keyframe.edges.size() >= Mapper::kMinEdges
+                                 ? first.mapping.keyframe.typical_depth_m
+                                 : std::sqrt(limits.near_m * limits.far_m);
+  FirstMap assumed{start, {}};
+  assumed.path.typical_depth_m =
+      assumed_depth_m(within(events, start.poses), start, mapper, limits.near_m, otherwise_m);
+  assumed.mapping = mapper.map(within(events, start.poses), assumed.path);
+  if (assumed.mapping.keyframe.edges.size() >= options.min_edges) return assumed;
   const PathRefinement refinement(measuring_rotation(options.refinement, gyroscope), camera);
   const double start_s = start.poses.start_s();
-  const double longest_s = longest_path_s(events, start, options);
+  const double longest_s = longest_path_s(events, start, camera, options);
   PathEstimate path = start;
   double length_s = path.poses.end_s() - start_s;
   while (!is_enough() && length_s < longest_s) {
@@ -77,7 +116,7 @@ FirstMap first_map(std::span<const Event> events, const PathEstimate& start, con
       first = {path, std::move(mapping)};
   }
   if (first.mapping.keyframe.edges.size() < Mapper::kMinEdges)
-    return map_of_assumed_depth(events, start, mapper, options, gyroscope);
+    return map_of_assumed_depth(events, start, mapper, camera, options, gyroscope);
   // Now the typical depth is known, at which edges of an unknown one are tracked.
   first.path.typical_depth_m = first.mapping.keyframe.typical_depth_m;
   Mapping mapping = mapper.map(within(events, first.path.poses), first.path);

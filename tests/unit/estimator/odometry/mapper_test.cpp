@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "estimator/odometry/view_turn.h"
 #include "tests/support/planar_world.h"
 
 namespace saccade {
@@ -106,6 +107,42 @@ TEST(Mapper, ATurningCameraMapsEdgesAtTheTypicalDepth) {
                               turned_world().camera()),
               0.5);
   }
+}
+
+TEST(Mapper, WhatTurnsOutOfViewIsNotMapped) {
+  MappingOptions options;
+  options.events = 10000000;
+  options.image = false;
+  options.depth.method = DepthConfig::Method::kRays;
+  PathEstimate path;
+  path.poses = testing::trajectory_of(turn, kMapped_s);
+  const auto first_s = [&](double most_turn) {
+    options.turn = most_turn;
+    return Mapper(options, turned_world().camera()).map(events_of_turn(), path).keyframe.start_s;
+  };
+  EXPECT_LT(first_s(0), 0.01) << "all of it";
+  EXPECT_LT(first_s(1), 0.01) << "a whole view is not gone";
+  // It turns by 1.63 rad/s, and sees 0.85 rad.
+  const double angle = angle_of_view(turned_world().camera());
+  EXPECT_NEAR(first_s(0.1), kMapped_s - 0.1 * angle / 1.63, 0.003);
+}
+
+TEST(Mapper, EdgesOfUnknownDepthsHaveOneInCommon) {
+  // Beside the turn, less than three pixels of parallax at the middle of the corner.
+  const auto motion = [](double t_s) { return Rigid3(turn(t_s).rotation(), {0.35 * t_s, 0, 0}); };
+  const Events events = turned_world().simulate(motion, 0, kMapped_s, 1e-3, 0.15);
+  MappingOptions options;
+  options.image = false;
+  options.depth.method = DepthConfig::Method::kRays;
+  const Mapper mapper(options, turned_world().camera());
+  PathEstimate path;
+  path.poses = testing::trajectory_of(motion, kMapped_s);
+  path.fixed_until_s = path.given_until_s = kMapped_s;
+  for (double depth_m : {0.5, 2.0, 4.0}) {
+    for (int i = 0; i < 6; ++i) depth_m = mapper.common_depth(events, path, depth_m);
+    EXPECT_NEAR(depth_m, testing::kCornerDepth_m, 0.25 * testing::kCornerDepth_m);
+  }
+  EXPECT_EQ(mapper.common_depth({}, path, 3), 3) << "nothing says otherwise";
 }
 
 TEST(Mapper, NoDepthIsAssumedWhereNoneIsTypical) {
