@@ -58,7 +58,8 @@ FirstMap map_of_assumed_depth(std::span<const Event> events, const PathEstimate&
     if (first.mapping.keyframe.edges.size() >= Mapper::kMinEdges || length_s >= longest_s)
       return first;
     length_s = std::min(kPathGrowth * length_s, longest_s);
-    first.path.poses = extrapolated(start.poses, start_s + length_s, gyroscope);
+    first.path.poses =
+        extrapolated(start.poses, start_s + length_s, gyroscope, last_acceleration(start.poses));
   }
 }
 
@@ -101,11 +102,12 @@ FirstMap first_map(std::span<const Event> events, const PathEstimate& start, con
   const PathRefinement refinement(measuring_rotation(options.refinement, gyroscope), camera);
   const double start_s = start.poses.start_s();
   const double longest_s = longest_path_s(events, start, camera, options);
+  const PathAcceleration acceleration = last_acceleration(start.poses);
   PathEstimate path = start;
   double length_s = path.poses.end_s() - start_s;
   while (!is_enough() && length_s < longest_s) {
     length_s = std::min(kPathGrowth * length_s, longest_s);
-    const Trajectory longer = extrapolated(path.poses, start_s + length_s, gyroscope);
+    const Trajectory longer = extrapolated(path.poses, start_s + length_s, gyroscope, acceleration);
     const std::span<const Event> window = within(events, longer);
     if (window.empty()) continue;
     // Where there is too little to adjust it by, the path is the longer one as it is.

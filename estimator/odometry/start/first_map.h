@@ -39,10 +39,12 @@ struct FirstMap {
 };
 
 /// What a run starts from. Where the camera hardly translates sideways while its poses are given,
-/// few edges have a depth, and tracking would be lost soon after. The path is then extrapolated at
-/// its last velocity and adjusted together with the edges (PathRefinement), with the given poses
-/// restored each time, until `mapper` makes a map of edges enough, or the path is as long as it may
-/// get; the largest map is taken. Where none has edges that could be tracked, as in a rotation, edges
+/// few edges have a depth, and tracking would be lost soon after. The others are then mapped at the
+/// depth that all edges have in common (Mapper::common_depth()). Where even these are too few, the
+/// path is extrapolated at its last velocity and acceleration and adjusted together with the edges
+/// (PathRefinement), with the given poses restored each time, until `mapper` makes a map of edges
+/// enough, or the path is as long as it may get, or has turned by a quarter of the view; the largest
+/// map is taken. Where none has edges that could be tracked, as in a rotation, edges
 /// are mapped at an assumed depth: the scale of what follows is a guess. `start` as of Odometry::run(): one without given poses is taken
 /// as it is. `events` in order of time; `camera` with its lens; `gyroscope`, where it is not empty,
 /// measures the rotation beyond the given poses. Deterministic.

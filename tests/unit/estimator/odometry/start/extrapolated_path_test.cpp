@@ -46,6 +46,44 @@ TEST(CarriedPath, APathShorterThanTheLookBackTellsItsVelocity) {
             1e-9);
 }
 
+/// From rest on, at a constant acceleration of the twist.
+Trajectory accelerated(double end_s, double every_s = 5e-3) {
+  std::vector<StampedPose> poses;
+  for (int i = 0; i * every_s <= end_s + 1e-9; ++i) {
+    const double t_s = i * every_s;
+    poses.push_back({t_s, Rigid3::exp(5 * t_s * t_s * kVelocity)});
+  }
+  return Trajectory(std::move(poses));
+}
+
+TEST(CarriedPath, AnAccelerationLastsAsLongAgainAsItWasSeen) {
+  const Trajectory before = accelerated(0.05);
+  const PathAcceleration acceleration = last_acceleration(before);
+  EXPECT_LT((acceleration.rate - 10 * kVelocity).norm(), 0.01 * kVelocity.norm());
+  EXPECT_NEAR(acceleration.until_s, 0.1, 1e-12);
+  const Trajectory path = extrapolated(before, 0.2, {}, acceleration);
+  for (const StampedPose& pose : path.poses()) {
+    const double t_s = pose.t_s;
+    const double way_s = t_s <= 0.1 ? 5 * t_s * t_s : 0.05 + (t_s - 0.1);  // then at 10 * 0.1 s
+    ASSERT_LT((Rigid3::exp(way_s * kVelocity).inverse() * pose.world_from_camera).log().norm(),
+              0.003 * kVelocity.norm())
+        << t_s;
+  }
+  const Trajectory steady_on = extrapolated(before, 0.2, {});
+  EXPECT_LT(steady_on.poses().back().world_from_camera.translation().norm(),
+            0.7 * path.poses().back().world_from_camera.translation().norm());
+}
+
+TEST(CarriedPath, OfALongPathTheLastTenthOfASecondCounts) {
+  EXPECT_NEAR(last_acceleration(accelerated(0.3)).until_s, 0.4, 1e-12);
+  EXPECT_LT(last_acceleration(steady(0.3)).rate.norm(), 1e-6);
+}
+
+TEST(CarriedPath, TwoPosesTellNoAcceleration) {
+  const PathAcceleration acceleration = last_acceleration(steady(0.005));
+  EXPECT_EQ(acceleration.rate.norm(), 0);
+}
+
 TEST(CarriedPath, AGyroscopeTellsTheTurnBeyond) {
   std::vector<ImuSample> readings(2);
   readings[1].t_ns = ns_from_seconds(1.0);
