@@ -223,10 +223,10 @@ TEST_F(OdometryModule, AFastTurnDoesNotLeaveTheMap) {
   const testing::Motion motion = [](double t_s) {
     return Rigid3(so3_exp({0, 0.5 * std::sin(3 * std::numbers::pi * t_s), 0}), {0.01 * t_s, 0, 0});
   };
-  const testing::PlanarWorld world = testing::wall_world(160, 120, 133, kDepth_m, 480, 360);
+  const testing::PlanarWorld world = testing::wall_world(120, 90, 100, kDepth_m, 240, 180);
   const testing::StampedPicture blank{0, ImageU8(world.camera().width, world.camera().height)};
   const fs::path data = folder_.path() / "fast turn";
-  testing::write_recording(data, world.camera(), world.simulate(motion, 0, kEnd_s, 1e-3, 0.15),
+  testing::write_recording(data, world.camera(), world.simulate(motion, 0, kEnd_s, 1e-3, 0.3),
                            std::span(&blank, 1), poses_until(kEnd_s, motion));
   const fs::path run = folder_.path() / "run";
   const RunSummary summary = run_odometry(testing::run_request(data, run, with_short_start()));
@@ -236,9 +236,9 @@ TEST_F(OdometryModule, AFastTurnDoesNotLeaveTheMap) {
     ASSERT_EQ(poses.text(i, poses.require("tracker_lost")), "0");
   EXPECT_GE(read_keyframe_list(run / "keyframes.yaml").size(), 4U);
   const Trajectory found = read_trajectory(run / "trajectory.txt");
-  EXPECT_GT(found.end_s(), kEnd_s - 0.01);
+  EXPECT_GT(found.end_s(), kEnd_s - 0.03);
   for (const StampedPose& pose : found.poses())
-    ASSERT_LT(angle_between(pose.world_from_camera.rotation(), motion(pose.t_s).rotation()), 0.03)
+    ASSERT_LT(angle_between(pose.world_from_camera.rotation(), motion(pose.t_s).rotation()), 0.05)
         << pose.t_s;
   const std::vector<RunView> views = read_view_list(run / "views.yaml");
   for (std::size_t i = 1; i < views.size(); ++i) EXPECT_GT(views[i].t_s, views[i - 1].t_s);
