@@ -175,38 +175,51 @@ Mapping Mapper::map_once(std::span<const Event> events, const PathEstimate& path
   return mapping;
 }
 
-double Mapper::common_depth(std::span<const Event> events, const PathEstimate& path,
-                            double assumed_m) const {
-  // Twice the information of the assumption is the most that an edge has a say by: few edges next to
-  // the camera say more than all others.
-  constexpr double kMostInformation = 2;
-  constexpr double kSigma = RayDepthOptions::kAssumedSigma;
+std::optional<double> Mapper::common_depth(std::span<const Event> events, const PathEstimate& path,
+                                           double assumed_m) const {
+  // Few edges next to the camera would say more than all others.
+  constexpr double kMostInformation = 2;  // of that of the assumption
+  constexpr double kLeastInformation = 1 / (0.1 * 0.1);
+  // The regression weighs the assumption by the noise of the iteration before: what is left of it
+  // after it is taken out, by thousands of edges that know nothing, would look like knowledge.
+  constexpr double kRemainder = 0.1;
+  constexpr double kAssumption =
+      1 / (RayDepthOptions::kAssumedSigma * RayDepthOptions::kAssumedSigma);
   ViewWindow window;
   window.events = newest(within(events, path.poses), path.poses);
-  if (window.events.empty()) return assumed_m;
+  if (window.events.empty()) return std::nullopt;
   const Trajectory smooth = smoothed(path.poses, window.events);
   window.trajectory = &smooth;
   window.reference_s =
       (seconds_from_ns(window.events.front().t_ns) + seconds_from_ns(window.events.back().t_ns)) /
       2;
+  std::vector<Event> some;
+  if (const auto most = static_cast<std::size_t>(options_.depth_events);
+      window.events.size() > most)
+    window.events = some = of_some_pixels(window.events, most, camera_);
+  if (window.events.empty()) return std::nullopt;
   MappingOptions assuming = relaxed(options_, kMostRelaxed);
   assuming.depth.rays.assumed_inverse_depth = 1 / assumed_m;
   const WindowEdgels found = Mapper(assuming, camera_).rays().find_edgels(window);
   std::vector<WeightedValue> inverse;  // relative to the assumed one
-  for (const FittedEdgel& fitted : found.edges) {
-    // What the events say, without the assumption that was added to it.
-    const double assumption = 1 / (kSigma * kSigma);
+  double information = 0;
+  for (std::size_t i = 0; i < found.edges.size(); ++i) {
+    // What the events say, without the assumption where that was added to it.
+    const FittedEdgel& fitted = found.edges[i];
+    const double assumption = i < found.first_assumed ? 0 : kAssumption;
     const double sigma = static_cast<double>(fitted.sigma) * assumed_m;
     const double all = 1 / (sigma * sigma);
     const double own = all - assumption;
-    if (own <= 0) continue;
+    if (!(own > kRemainder * assumption) || !std::isfinite(own)) continue;
     const double value = static_cast<double>(fitted.edge.inverse_depth) * assumed_m;
     inverse.push_back(
-        {(value * all - assumption) / own, std::min(own, kMostInformation * assumption)});
+        {(value * all - assumption) / own, std::min(own, kMostInformation * kAssumption)});
+    information += inverse.back().weight;
   }
-  const double median = weighted_median(inverse);
+  if (information < kLeastInformation) return std::nullopt;
   const DepthLimits& limits = options_.depth.limits;
-  return median > 0 ? std::clamp(assumed_m / median, limits.near_m, limits.far_m) : assumed_m;
+  const double nearest = assumed_m / limits.near_m, furthest = assumed_m / limits.far_m;
+  return assumed_m / std::clamp(weighted_median(inverse), furthest, nearest);
 }
 
 void Mapper::refit(const Trajectory& path, const PathEstimate& estimate, Mapping& mapping) const {
@@ -272,10 +285,10 @@ std::span<const Event> Mapper::newest(std::span<const Event> events, const Traje
   const double most = options_.turn * angle_of_view(camera_);
   const Rigid3 last = path.at_clamped(seconds_from_ns(events.back().t_ns));
   const std::span<const StampedPose> poses = path.poses();
-  for (std::size_t i = poses.size(); i-- > 0;)
+  const auto before = path.last_before(seconds_from_ns(events.back().t_ns));
+  for (std::size_t i = before ? *before + 1 : 0; i-- > 0;)
     if (view_turn(poses[i].world_from_camera, last) > most)
-      return events.subspan(
-          std::min(events.size() - 1, count_before(events, ns_from_seconds(poses[i].t_s))));
+      return events.subspan(count_before(events, ns_from_seconds(poses[i].t_s)));
   return events;
 }
 

@@ -104,10 +104,12 @@ class Mapper {
   void renew(std::span<const Event> events, const Trajectory& poses, Keyframe& keyframe) const;
 
   /// The depth that the edges of the newest events have in common, where hardly any has one that can
-  /// be told by itself: the median of what their events say beside the assumption of `assumed_m`,
-  /// each by its information. `assumed_m` where no edge says anything.
-  [[nodiscard]] double common_depth(std::span<const Event> events, const PathEstimate& path,
-                                    double assumed_m) const;
+  /// be told by itself: the median of what their events say beside the assumption of `assumed_m`, by
+  /// their information, which counts up to twice that of the assumption. nullopt where all together
+  /// say it less well than to a tenth.
+  [[nodiscard]] std::optional<double> common_depth(std::span<const Event> events,
+                                                   const PathEstimate& path,
+                                                   double assumed_m) const;
 
   [[nodiscard]] RayDepth rays() const;
 

@@ -238,6 +238,7 @@ void Odometry::start_from(FirstMap first, OdometryResult& result) {
     throw InputError("start",
                      "the events of the known poses show no edges in depth: the camera must "
                      "move sideways there: begin later (--start-s), or make start.truth_s longer");
+  mapped_from_s_ = keyframe.start_s - 1e-9;
   path_.assign(first.path.poses.poses().begin(), first.path.poses.poses().end());
   fixed_until_s_ = first.path.fixed_until_s;
   given_until_s_ = first.path.given_until_s;

@@ -177,7 +177,7 @@ class Odometry {
   double fixed_until_s_ = 0;
   double given_until_s_ = kNoGivenPoses;
   double held_until_s_ = 0;   ///< poses of the start until then never change: they fix the gauge
-  double mapped_from_s_ = 0;  ///< poses before were lost and found again
+  double mapped_from_s_ = 0;  ///< events before are not mapped any more
   bool is_lost_ = false;
   std::vector<TimeNs>
       lost_ns_;  ///< times of the poses that the tracker, not their check, says are lost

@@ -177,6 +177,7 @@ WindowEdgels RayDepth::find_edgels(const ViewWindow& window) const {
   timed(assignment_s, assign);
   timed(propagation_s, [&] { propagate(rays, strips, found); });
   timed(assignment_s, assign);
+  found.first_assumed = found.edges.size();
   if (options_.assumed_inverse_depth) timed(propagation_s, [&] { assume(rays, found); });
   for (std::uint32_t& event : found.events.event) event = rays.source[event];
   found.stages_s = {{"rays", rays_s},

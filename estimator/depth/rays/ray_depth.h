@@ -67,6 +67,8 @@ struct PoseError {
 /// The edgels of a window before their depths are fused.
 struct WindowEdgels {
   std::vector<FittedEdgel> edges;  ///< `first` and `last` are indices into `events`
+  /// Edges before this one need no assumed depth. Of what find_edgels() returns.
+  std::size_t first_assumed = 0;
   EdgelEvents
       events;  ///< indices into the rays until the end of find_edgels(), then into the window
   std::vector<Eigen::Vector2f> seeds;

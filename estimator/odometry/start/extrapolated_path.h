@@ -70,9 +70,11 @@ struct PathAcceleration {
   const double last_s = std::min(kLast_s, end_s - path.start_s());
   const Rigid3 last = path.poses().back().world_from_camera;
   const double lasts_s = std::max(0.0, acceleration.until_s - end_s);
-  // Their mean velocity is that of their middle.
+  // The velocity at their end is more than their mean by what is gained in them, as far as they are
+  // accelerated: from the beginning until `until_s`.
+  const double gaining_s = std::clamp(acceleration.until_s - (end_s - last_s), 0.0, last_s);
   const Twist velocity = (path.at_clamped(end_s - last_s).inverse() * last).log() / last_s +
-                         0.5 * std::min(last_s, lasts_s) * acceleration.rate;
+                         0.5 * gaining_s * gaining_s / last_s * acceleration.rate;
   std::vector<StampedPose> poses(path.poses().begin(), path.poses().end());
   for (double t_s = end_s + kPoseSpacing_s; t_s < until_s + kPoseSpacing_s; t_s += kPoseSpacing_s) {
     const double way_s = t_s - end_s;

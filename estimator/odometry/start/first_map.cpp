@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -29,14 +30,19 @@ Trajectory with_given_poses(const Trajectory& path, const PathEstimate& start) {
 constexpr double kMostTurn = 0.25;
 
 double longest_path_s(std::span<const Event> events, const PathEstimate& start,
-                      const PinholeCamera& camera, const FirstMapOptions& options) {
+                      const PinholeCamera& camera, const FirstMapOptions& options,
+                      const Gyroscope& gyroscope) {
+  const double start_s = start.poses.start_s(), end_s = start.poses.end_s();
   const double longest_s =
-      std::min(options.window_s, seconds_from_ns(events.back().t_ns) - start.poses.start_s());
-  const double rate_rad_s = view_turn(start.poses.at_clamped(start.poses.end_s() - kPoseSpacing_s),
-                                      start.poses.poses().back().world_from_camera) /
-                            kPoseSpacing_s;
-  const double given_s = start.poses.end_s() - start.poses.start_s();
-  return std::min(longest_s, given_s + kMostTurn * angle_of_view(camera) / rate_rad_s);
+      std::min(options.window_s, seconds_from_ns(events.back().t_ns) - start_s);
+  const Trajectory path =
+      extrapolated(start.poses, start_s + longest_s, gyroscope, last_acceleration(start.poses));
+  const Rigid3 given = start.poses.poses().back().world_from_camera;
+  for (const StampedPose& pose : path.poses())
+    if (pose.t_s > end_s &&
+        view_turn(given, pose.world_from_camera) > kMostTurn * angle_of_view(camera))
+      return std::min(longest_s, pose.t_s - start_s);
+  return longest_s;
 }
 
 constexpr double kPathGrowth = 1.15;  ///< of the path, from round to round
@@ -48,7 +54,7 @@ FirstMap map_of_assumed_depth(std::span<const Event> events, const PathEstimate&
                               const FirstMapOptions& options, const Gyroscope& gyroscope) {
   FirstMap first{start, {}};
   const double start_s = start.poses.start_s();
-  const double longest_s = longest_path_s(events, start, camera, options);
+  const double longest_s = longest_path_s(events, start, camera, options, gyroscope);
   // In the middle of what may be, as ratios count.
   const DepthLimits& limits = options.refinement.limits;
   first.path.typical_depth_m = std::sqrt(limits.near_m * limits.far_m);
@@ -63,19 +69,27 @@ FirstMap map_of_assumed_depth(std::span<const Event> events, const PathEstimate&
   }
 }
 
-/// The depth at which edges are assumed whose depth the given poses do not tell: `otherwise`, if the
-/// edges do not say together that it is wrong by more than is assumed anyway.
+/// The depth at which edges are assumed whose depth the given poses do not tell: `otherwise_m`, if
+/// the edges do not say together that it is wrong by more than is assumed anyway.
 double assumed_depth_m(std::span<const Event> events, const PathEstimate& start,
                        const Mapper& mapper, double near_m, double otherwise_m) {
   // From near on: the window over which edges are matched is short there, so that they are matched
   // right. A step goes a third to all of the way.
   constexpr int kMostSteps = 6;
   constexpr double kNearer = 4, kSettled = 0.02;
-  double depth_m = std::max(near_m, otherwise_m / kNearer);
+  const double first_m = std::max(near_m, otherwise_m / kNearer);
+  double depth_m = first_m;
   for (int i = 0; i < kMostSteps; ++i) {
-    const double before_m = depth_m;
-    depth_m = mapper.common_depth(events, start, depth_m);
+    const std::optional<double> next_m = mapper.common_depth(events, start, depth_m);
+    if (!next_m) return otherwise_m;
+    const double before_m = std::exchange(depth_m, *next_m);
     if (std::abs(depth_m - before_m) < kSettled * before_m) break;
+  }
+  // Edges that know nothing leave any assumption as it is.
+  constexpr double kMoved = 0.1;
+  if (std::abs(depth_m - first_m) < kMoved * first_m) {
+    const std::optional<double> next_m = mapper.common_depth(events, start, otherwise_m);
+    if (!next_m || *next_m > (1 - kMoved) * otherwise_m) return otherwise_m;
   }
   const double relative = otherwise_m / depth_m;  // of the inverse depths
   return std::abs(relative - 1) < RayDepthOptions::kAssumedSigma ? otherwise_m : depth_m;
@@ -101,7 +115,7 @@ FirstMap first_map(std::span<const Event> events, const PathEstimate& start, con
   if (assumed.mapping.keyframe.edges.size() >= options.min_edges) return assumed;
   const PathRefinement refinement(measuring_rotation(options.refinement, gyroscope), camera);
   const double start_s = start.poses.start_s();
-  const double longest_s = longest_path_s(events, start, camera, options);
+  const double longest_s = longest_path_s(events, start, camera, options, gyroscope);
   const PathAcceleration acceleration = last_acceleration(start.poses);
   PathEstimate path = start;
   double length_s = path.poses.end_s() - start_s;

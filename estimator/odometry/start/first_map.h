@@ -12,8 +12,9 @@
 namespace saccade {
 
 struct FirstMapOptions {
-  std::size_t min_edges = 0;  ///< with fewer, given poses are extrapolated; 0: never
-  double window_s = 0.3;      ///< of the path with the given poses, to a millisecond; at most
+  /// With fewer, depths are assumed; with fewer of these, too, given poses are extrapolated; 0: never.
+  std::size_t min_edges = 0;
+  double window_s = 0.3;  ///< of the path with the given poses, to a millisecond; at most
   PathRefinementOptions refinement = given_refinement();
 
  private:

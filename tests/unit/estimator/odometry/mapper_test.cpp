@@ -139,10 +139,15 @@ TEST(Mapper, EdgesOfUnknownDepthsHaveOneInCommon) {
   path.poses = testing::trajectory_of(motion, kMapped_s);
   path.fixed_until_s = path.given_until_s = kMapped_s;
   for (double depth_m : {0.5, 2.0, 4.0}) {
-    for (int i = 0; i < 6; ++i) depth_m = mapper.common_depth(events, path, depth_m);
+    for (int i = 0; i < 6; ++i) depth_m = mapper.common_depth(events, path, depth_m).value();
     EXPECT_NEAR(depth_m, testing::kCornerDepth_m, 0.25 * testing::kCornerDepth_m);
   }
-  EXPECT_EQ(mapper.common_depth({}, path, 3), 3) << "nothing says otherwise";
+  EXPECT_FALSE(mapper.common_depth({}, path, 3));
+  path.poses = testing::trajectory_of(turn, kMapped_s);
+  for (const double depth_m : {0.5, 2.0, 4.0})
+    EXPECT_NEAR(mapper.common_depth(events_of_turn(), path, depth_m).value_or(depth_m), depth_m,
+                0.05 * depth_m)
+        << "a turn tells no depth";
 }
 
 TEST(Mapper, NoDepthIsAssumedWhereNoneIsTypical) {

@@ -69,6 +69,12 @@ TEST(CarriedPath, AnAccelerationLastsAsLongAgainAsItWasSeen) {
               0.003 * kVelocity.norm())
         << t_s;
   }
+  // The same in steps, also where it ends within the last 20 ms.
+  Trajectory steps = before;
+  for (const double until_s : {0.07, 0.095, 0.107, 0.115, 0.2})
+    steps = extrapolated(steps, until_s, {}, acceleration);
+  EXPECT_LT((steps.at_clamped(0.2).inverse() * path.at_clamped(0.2)).log().norm(),
+            0.003 * kVelocity.norm());
   const Trajectory steady_on = extrapolated(before, 0.2, {});
   EXPECT_LT(steady_on.poses().back().world_from_camera.translation().norm(),
             0.7 * path.poses().back().world_from_camera.translation().norm());

@@ -145,6 +145,8 @@ TEST(FirstMap, ARotationIsMappedAtAnAssumedDepth) {
   const FirstMap first = first_map(turned, start, mapper, corner().camera(), carried(), {});
   EXPECT_GE(first.mapping.keyframe.edges.size(), Mapper::kMinEdges);
   EXPECT_TRUE(first.is_scale_guessed());
+  EXPECT_NEAR(first.path.typical_depth_m.value(), std::sqrt(0.3 * 50), 1e-9)
+      << "a rotation does not say otherwise";
   EXPECT_DOUBLE_EQ(first.path.poses.end_s(), kGiven_s) << "the given poses show edges enough";
   EXPECT_FALSE(made(given(), carried()).is_scale_guessed()) << "a slide tells depths";
 }
