@@ -171,11 +171,12 @@ class Scene {
   [[nodiscard]] bool is_lit() const;
   /// The flickers of its lights, each once; empty in steady light.
   [[nodiscard]] std::span<const Flicker> flickers() const;
-  /// Which of `lights` light what a ray sees of a static triangle, `distance` along it, in double
-  /// precision: without the rounding of shadow rays. nullopt where that is not known: among moving
-  /// objects and cut-outs.
-  [[nodiscard]] std::optional<LightSet> lights_at(const Ray& ray, TriangleId triangle,
-                                                  double distance, LightSet lights) const;
+  /// Finds where `lights` light a static triangle on the straight way between two of its points, on
+  /// the side of `eye`: in double precision, without the rounding of shadow rays. Spots light
+  /// outside of their cones, too. False where that is not known: among moving objects and cut-outs.
+  [[nodiscard]] bool find_lighting_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                                           const Eigen::Vector3d& eye, TriangleId triangle,
+                                           LightSet lights, PatchLighting& lighting) const;
   /// Whether some of its lights are spots, whose irradiance changes fast at the edge of their cone.
   [[nodiscard]] bool has_spots() const;
   /// Bounds of the irradiance of what is seen of `triangle` from one ray to a later one, if just

@@ -323,43 +323,42 @@ const TriangleLighting& Scene::State::triangle_lighting(TriangleId triangle, dou
   return whole;
 }
 
-std::optional<LightSet> Scene::lights_at(const Ray& ray, TriangleId triangle, double distance,
-                                         LightSet lights) const {
-  constexpr double kAround = 1e-5;  // of the ray's length: far above the rounding of a search
+bool Scene::find_lighting_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                                  const Eigen::Vector3d& eye, TriangleId triangle, LightSet lights,
+                                  PatchLighting& lighting) const {
+  constexpr double kAround = 1e-5;  // of the way from the eye: far above the rounding of a search
   constexpr std::size_t kMost = 8192;
-  if (!state_->illumination || !moving_objects().empty()) return std::nullopt;
+  if (!state_->illumination || !moving_objects().empty()) return false;
   const Illumination& illumination = *state_->illumination;
   const AffineForm& plane = state_->surfaces[triangle].plane;
-  const double side = plane.at(ray.origin) > 0 ? 1 : -1;
-  const Eigen::Vector3d point = ray.origin + distance * ray.direction;
-  const Eigen::Vector3d shadow_offset = illumination.shadow_offset() * side * plane.gradient;
-  const Eigen::Vector3d start = point + shadow_offset;
-  const Eigen::Vector3d right =
-      kAround * distance * ray.direction.norm() * plane.gradient.unitOrthogonal();
-  const Eigen::Vector3d down = plane.gradient.cross(right);
-  const std::array<Eigen::Vector3d, 4> around{point - right, point - down, point + right,
-                                              point + down};
+  const double side = plane.at(eye) > 0 ? 1 : -1;
+  const Eigen::Vector3d way = to - from;
+  const Eigen::Vector3d along =
+      kAround * (from - eye).norm() *
+      (way.squaredNorm() > 0 ? way.normalized() : plane.gradient.unitOrthogonal());
+  const Eigen::Vector3d across = plane.gradient.cross(along);
+  const Patch patch{triangle,
+                    side,
+                    {from - along - across, from - along + across, to + along + across,
+                     to + along - across}};
+  lighting.shadow_offset = illumination.shadow_offset() * side * plane.gradient;
+  lighting.unoccluded = 0;
+  lighting.partly_occluded.clear();
   const AffineForm front{side * plane.gradient,
                          side * plane.offset - 0.5 * illumination.shadow_offset()};
-  LightSet lit = 0;
   std::vector<TriangleId> found;
   for (LightSet open = lights; open != 0; open &= open - 1) {
-    const std::size_t k = index_of(open);
-    const LightOptions& light = illumination.lights()[k];
+    const LightOptions& light = illumination.lights()[index_of(open)];
     const double height =
         light.has_position() ? plane.at(light.position) : -plane.gradient.dot(light.direction);
     if (!(side * height > 0)) continue;
     found.clear();
-    if (light.shadows &&
-        !state_->collect_occluders(light, around, shadow_offset, front, kMost, found))
-      return std::nullopt;
-    const bool is_hidden = std::any_of(found.begin(), found.end(), [&](TriangleId other) {
-      const auto occluder = state_->make_occluder(other, light, point);
-      return occluder && occluder->occludes(start);
-    });
-    if (!is_hidden) lit |= LightSet{1} << k;
+    if (light.shadows && !state_->collect_occluders(light, patch.corners, lighting.shadow_offset,
+                                                    front, kMost, found))
+      return false;
+    state_->add_light(open & ~(open - 1), patch, found, lighting);
   }
-  return lit;
+  return true;
 }
 
 const PatchLighting* Scene::find_lighting(TriangleId triangle, std::span<const Frustum> frusta,

@@ -255,11 +255,12 @@ bool AdaptiveTile::settle_lights(std::size_t i, ViewSample& from, ViewSample& to
   if ((lights & ~(from.settled & to.settled)) == 0 || sampler_.rays_per_pixel() > 1 ||
       to.t_s - from.t_s > kSettled * step_s_ || from.triangles != to.triangles)
     return false;
+  if (!sampler_.find_lights_between(i, from, to, lights)) return false;
   // What has been sensed stands: where double precision sees it otherwise, rays go on.
   ViewSample known = from;
-  if (!sampler_.settle_lights(i, lights, known) || known.lights_of_ray != from.lights_of_ray ||
-      !sampler_.settle_lights(i, lights, to))
-    return false;
+  sampler_.settle_lights(i, lights, known);
+  if (known.lights_of_ray != from.lights_of_ray) return false;
+  sampler_.settle_lights(i, lights, to);
   from.settled |= lights;
   return true;
 }
@@ -270,8 +271,9 @@ std::optional<ViewSample> AdaptiveTile::resample_settled(std::size_t i, double t
   const LightSet lights = from.lights_of_ray ^ to.lights_of_ray;
   if (lights == 0 || (lights & ~(from.settled & to.settled)) != 0 || from.triangles != to.triangles)
     return std::nullopt;
+  if (!sampler_.find_lights_between(i, from, to, lights)) return std::nullopt;
   ViewSample sample = sampler_.resample({i, t_s}, from);
-  if (!sampler_.settle_lights(i, lights, sample)) return std::nullopt;
+  sampler_.settle_lights(i, lights, sample);
   return sample;
 }
 

@@ -127,14 +127,33 @@ ViewSample ViewSampler::resample(const SampleRequest& request, const ViewSample&
   return sample;
 }
 
-bool ViewSampler::settle_lights(std::size_t pixel, LightSet lights, ViewSample& sample) {
+bool ViewSampler::find_lights_between(std::size_t pixel, const ViewSample& from,
+                                      const ViewSample& to, LightSet lights) {
+  SACCADE_CHECK(from.triangle == to.triangle && rays_.rays_per_pixel() == 1);
+  const bool is_found = way_.pixel == pixel && way_.triangle == from.triangle &&
+                        way_.from_s <= from.t_s && to.t_s <= way_.to_s &&
+                        (lights & ~way_.lights) == 0;
+  if (is_found) return true;
+  way_.triangle = kNothing;
+  const Eigen::Vector3d eye = camera_at(from.t_s).position;
+  if (!scene_.find_lighting_between(point_of(pixel, from), point_of(pixel, to), eye, from.triangle,
+                                    lights, way_.lighting))
+    return false;
+  way_.pixel = pixel;
+  way_.triangle = from.triangle;
+  way_.lights = lights;
+  way_.from_s = from.t_s;
+  way_.to_s = to.t_s;
+  return true;
+}
+
+void ViewSampler::settle_lights(std::size_t pixel, LightSet lights, ViewSample& sample) {
+  SACCADE_CHECK(way_.pixel == pixel && way_.triangle == sample.triangle &&
+                way_.from_s <= sample.t_s && sample.t_s <= way_.to_s);
   const LightSet open = lights & ~sample.settled;
-  if (open == 0) return true;
-  const CameraFrame& camera = camera_at(sample.t_s);
-  const Ray ray{camera.position, camera.rotation * directions(pixel)[0], sample.t_s};
-  const std::optional<LightSet> lit = scene_.lights_at(ray, sample.triangle, sample.distance, open);
-  if (!lit) return false;
-  const LightSet known = (sample.lights_of_ray & ~open) | *lit;
+  if (open == 0) return;
+  const LightSet lit = way_.lighting.lights_at(point_of(pixel, sample)) & open;
+  const LightSet known = (sample.lights_of_ray & ~open) | lit;
   const LightSet settled = sample.settled | lights;
   if (known != sample.lights_of_ray) {
     sample.lights_of_ray = known;
@@ -143,7 +162,11 @@ bool ViewSampler::settle_lights(std::size_t pixel, LightSet lights, ViewSample& 
     sample = resample({pixel, sample.t_s}, sample);
   }
   sample.settled = settled;
-  return true;
+}
+
+Eigen::Vector3d ViewSampler::point_of(std::size_t pixel, const ViewSample& sample) {
+  const CameraFrame& camera = camera_at(sample.t_s);
+  return camera.position + sample.distance * (camera.rotation * directions(pixel)[0]);
 }
 
 SurfaceArc ViewSampler::arc(std::size_t pixel, const ViewSample& from, const ViewSample& to) {

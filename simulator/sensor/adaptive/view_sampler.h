@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "simulator/motion/spline_table.h"
+#include "simulator/scene/light/patch_lighting.h"
 #include "simulator/scene/scene.h"
 #include "simulator/sensor/adaptive/surface_arc.h"
 #include "simulator/sensor/adaptive/view_sample.h"
@@ -35,6 +36,7 @@ class ViewSampler {
   /// The camera's motion during what follows; outlives it.
   void set_poses(const SplineTable& poses) {
     poses_ = &poses;
+    way_.triangle = kNothing;
     camera_s_ = std::numeric_limits<double>::quiet_NaN();
   }
 
@@ -58,14 +60,27 @@ class ViewSampler {
   /// the same lights all the time: without a ray.
   [[nodiscard]] SurfaceArc arc(std::size_t pixel, const ViewSample& from, const ViewSample& to);
 
-  /// Finds out in double precision which of `lights` light what a pixel with one ray sees, and
-  /// corrects the sample; false, and nothing done, where that is not known. Single precision, in
-  /// which shadow rays are traced, mistakes the edge of a shadow by up to a thousandth of a pixel.
-  [[nodiscard]] bool settle_lights(std::size_t pixel, LightSet lights, ViewSample& sample);
+  /// Finds in double precision where `lights` light what a pixel with one ray sees between two
+  /// samples of one triangle, close to each other, for settle_lights(); false where that is not
+  /// known. Single precision, in which shadow rays are traced, mistakes the edge of a shadow by up
+  /// to a thousandth of a pixel.
+  [[nodiscard]] bool find_lights_between(std::size_t pixel, const ViewSample& from,
+                                         const ViewSample& to, LightSet lights);
+  /// Corrects a sample between two for which `lights` were found.
+  void settle_lights(std::size_t pixel, LightSet lights, ViewSample& sample);
 
   [[nodiscard]] std::size_t rays_per_pixel() const { return rays_.rays_per_pixel(); }
 
  private:
+  /// What find_lights_between() found last.
+  struct Way {
+    std::size_t pixel = 0;
+    TriangleId triangle = kNothing;  ///< kNothing: nothing yet
+    LightSet lights = 0;
+    double from_s = 0, to_s = 0;
+    PatchLighting lighting;
+  };
+
   [[nodiscard]] std::span<const Eigen::Vector3d> directions(std::size_t pixel) const {
     return rays_.rays(tile_).subspan(pixel * rays_.rays_per_pixel(), rays_.rays_per_pixel());
   }
@@ -79,6 +94,8 @@ class ViewSampler {
   }
   [[nodiscard]] SurfaceSample surface(const CameraFrame& camera, const Eigen::Vector3d& direction,
                                       const Ray& ray, TriangleId triangle) const;
+  /// The point that a pixel with one ray sees, in the world.
+  [[nodiscard]] Eigen::Vector3d point_of(std::size_t pixel, const ViewSample& sample);
   /// Adds where a ray, the first of its pixel, sees a normal map.
   void add_normal_map(const Ray& ray, const SurfaceSample& seen, ViewSample& sample) const;
   /// Along the first ray of a pixel, on the triangle and under the lights of `like`.
@@ -92,6 +109,7 @@ class ViewSampler {
   const SplineTable* poses_ = nullptr;
   CameraFrame camera_;
   double camera_s_ = std::numeric_limits<double>::quiet_NaN();  ///< of camera_
+  Way way_;
 };
 
 }  // namespace saccade
