@@ -303,6 +303,19 @@ void Scene::illuminate(std::span<const Ray> rays, std::span<const TriangleId> tr
   state_->illuminate(rays, triangles, samples, false);
 }
 
+void Scene::find_lights(std::span<const Ray> rays, std::span<const TriangleId> triangles,
+                        std::span<const SurfaceSample> samples, std::span<const KnownLights> known,
+                        std::span<LightSet> lights) const {
+  SACCADE_CHECK(rays.size() <= kRayPacket && triangles.size() == rays.size() &&
+                samples.size() == rays.size() && known.size() == rays.size() &&
+                lights.size() == rays.size() && state_->illumination);
+  std::array<LitPoint, kRayPacket> points;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    points[i] = state_->surface_point(rays[i], samples[i], triangles[i]);
+  state_->illumination->find_unoccluded_lights({points.data(), rays.size()}, *state_->visibility,
+                                               lights, false, known);
+}
+
 double Scene::irradiance(const Ray& ray, TriangleId triangle, const SurfaceSample& surface) const {
   if (!state_->illumination || !(surface.distance > 0)) return 1;
   return state_->surfaces[triangle].with_self_light(state_->illumination->irradiance(

@@ -54,6 +54,12 @@ constexpr std::size_t kRayPacket = 16;
 using LightSet = std::uint64_t;
 constexpr std::size_t kMaxLights = 64;
 
+/// What is known of the lights at a point: no ray is traced to these.
+struct KnownLights {
+  LightSet lit = 0;     ///< nothing hides these
+  LightSet hidden = 0;  ///< something hides these
+};
+
 /// What the radiance of a visible point is made of: irradiance * factor * texture(x, y, level),
 /// without a texture irradiance * x.
 struct SurfaceSample {
@@ -165,6 +171,11 @@ class Scene {
   /// `triangles` (spots whether or not a point is in their cone), and the irradiance: 1 in an unlit scene and for the background.
   void illuminate(std::span<const Ray> rays, std::span<const TriangleId> triangles,
                   std::span<SurfaceSample> samples) const;
+  /// The lights alone, of at most 16 samples of triangles: those that `known`, one per sample, leaves
+  /// open are looked for.
+  void find_lights(std::span<const Ray> rays, std::span<const TriangleId> triangles,
+                   std::span<const SurfaceSample> samples, std::span<const KnownLights> known,
+                   std::span<LightSet> lights) const;
   /// The irradiance of a sample if just `surface.lights` light it: without shadow rays.
   [[nodiscard]] double irradiance(const Ray& ray, TriangleId triangle,
                                   const SurfaceSample& surface) const;

@@ -87,15 +87,21 @@ LightRange Illumination::factor_range(std::size_t flicker, double from_s, double
 
 void Illumination::find_unoccluded_lights(std::span<const LitPoint> points,
                                           const Visibility& blockers, std::span<LightSet> lights,
-                                          bool within_cones) const {
+                                          bool within_cones,
+                                          std::span<const KnownLights> known) const {
   std::fill(lights.begin(), lights.end(), LightSet{0});
   std::array<Ray, kRayPacket> rays;
   std::array<float, kRayPacket> distances;
   std::array<std::size_t, kRayPacket> owners;
   std::array<bool, kRayPacket> blocked;
   for (std::size_t index = 0; index < lights_.size(); ++index) {
+    const LightSet bit = LightSet{1} << index;
     std::size_t n = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!known.empty() && ((known[i].lit | known[i].hidden) & bit) != 0) {
+        lights[i] |= known[i].lit & bit;
+        continue;
+      }
       const LitPoint& point = points[i];
       const LightPath path = path_to(lights_[index], point);
       // A normal map turns away from a light and back within a texel: that is no edge of a shadow.
@@ -107,11 +113,12 @@ void Illumination::find_unoccluded_lights(std::span<const LitPoint> points,
       distances[n] = static_cast<float>(path.distance);
       owners[n++] = i;
     }
+    if (n == 0) continue;
     blocked.fill(false);
     if (lights_[index].shadows)
       blockers.find_blocked({rays.data(), n}, {distances.data(), n}, {blocked.data(), n});
     for (std::size_t k = 0; k < n; ++k)
-      if (!blocked[k]) lights[owners[k]] |= LightSet{1} << index;
+      if (!blocked[k]) lights[owners[k]] |= bit;
   }
 }
 

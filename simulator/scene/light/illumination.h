@@ -37,9 +37,10 @@ class Illumination {
 
   /// The lights that each of at most 16 points faces and that nothing hides from it. Of spots also
   /// those whose cone a point is outside of, so that a cone's edge is no edge of a shadow: with
-  /// `within_cones` without them, which takes no ray.
+  /// `within_cones` without them, which takes no ray. `known`: one per point, or none.
   void find_unoccluded_lights(std::span<const LitPoint> points, const Visibility& blockers,
-                              std::span<LightSet> lights, bool within_cones = false) const;
+                              std::span<LightSet> lights, bool within_cones = false,
+                              std::span<const KnownLights> known = {}) const;
 
   /// Radiance per albedo: ambient + environment(normal) + sum of intensity cos(angle) / distance^2
   /// (of directional lights without the distance, of spots times the falloff of their cone, of

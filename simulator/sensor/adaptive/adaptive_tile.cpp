@@ -139,8 +139,10 @@ auto AdaptiveTile::find_edges(std::span<const ViewSample> next) const -> Edges {
     if (!is_one_surface(a, b)) {
       edges.of_surfaces = true;
     } else if (a.lights != b.lights) {
-      edges.of_shadows.set(i);
-      edges.of_shadows.set(k);
+      const LightSet lights = a.lights_of_ray ^ b.lights_of_ray;
+      edges.any_shadows = true;
+      for (const std::size_t pixel : {i, k})
+        edges.of_shadows[pixel] |= lights != 0 ? lights : ~LightSet{0};
     }
   };
   const auto compare_pixels = [&](std::size_t i, std::size_t k) {
@@ -180,7 +182,7 @@ void AdaptiveTile::sense_step(double to_s, double step_px) {
 }
 
 void AdaptiveTile::sample_parts(const Edges& edges, double step_px) {
-  if (!edges.of_surfaces && edges.of_shadows.none()) return;
+  if (!edges.of_surfaces && !edges.any_shadows) return;
   const std::size_t parts = static_cast<std::size_t>(
       std::clamp(std::ceil(step_px / (kStepPart * options_.max_step_px) * kMostParts), 1.0,
                  static_cast<double>(kMostParts)));
@@ -188,29 +190,59 @@ void AdaptiveTile::sample_parts(const Edges& edges, double step_px) {
   const auto part_s = [&](std::size_t k) {
     return from_s + static_cast<double>(k) / static_cast<double>(parts) * step_s_;
   };
-  // What is seen tells where another surface comes into view; only there the light is asked for.
-  const bool looks = edges.of_surfaces && sampler_.rays_per_pixel() == 1;
+  // What is seen tells where another surface comes into view; only there all lights are asked for.
+  const std::size_t count = pixels_.size();
+  const bool is_single = sampler_.rays_per_pixel() == 1;
   std::array<std::array<TriangleId, kTilePixels>, kMostParts + 1> seen;
-  if (looks) {
-    for (std::size_t i = 0; i < pixels_.size(); ++i) {
-      seen[0][i] = views_[i].now.triangle;
-      seen[parts][i] = ahead_[i].back().triangle;
-    }
-    for (std::size_t k = 1; k < parts; ++k)
-      sampler_.look(part_s(k), {seen[k].data(), pixels_.size()});
+  std::array<std::array<LightSet, kTilePixels>, kMostParts + 1> lights;
+  std::bitset<kTilePixels> on_triangle;  // next to a shadow, and seeing one triangle at both ends
+  for (std::size_t i = 0; i < count; ++i) {
+    const ViewSample& now = views_[i].now;
+    const ViewSample& next = ahead_[i].back();
+    on_triangle[i] = is_single && edges.of_shadows[i] != 0 && now.triangles == next.triangles &&
+                     now.triangle != kNothing;
+    for (std::size_t k = 0; k <= parts; ++k) seen[k][i] = now.triangle;
+    for (std::size_t k = 0; k <= parts; ++k) lights[k][i] = now.lights_of_ray;
+    seen[parts][i] = next.triangle;
+    lights[parts][i] = next.lights_of_ray;
   }
+  if (edges.of_surfaces && is_single)
+    for (std::size_t k = 1; k < parts; ++k) sampler_.look(part_s(k), {seen[k].data(), count});
+  for (std::size_t k = 1; k < parts; ++k) look_at_shadows(edges, on_triangle, part_s(k), lights[k]);
   std::array<SampleRequest, kTilePixels> requests;
   std::array<ViewSample, kTilePixels> samples;
   for (std::size_t k = parts - 1; k > 0; --k) {  // the latest first, as they are taken
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < pixels_.size(); ++i)
-      if (edges.of_shadows[i] ||
-          (looks ? seen[k][i] != seen[k - 1][i] || seen[k][i] != seen[k + 1][i]
-                 : edges.of_surfaces))
-        requests[count++] = {i, part_s(k)};
-    sampler_.trace({requests.data(), count}, {samples.data(), count});
-    for (std::size_t m = 0; m < count; ++m) ahead_[requests[m].pixel].push_back(samples[m]);
+    std::size_t open = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool is_change = is_single ? seen[k][i] != seen[k - 1][i] || seen[k][i] != seen[k + 1][i]
+                                       : edges.of_surfaces;
+      if (is_change || (edges.of_shadows[i] != 0 && !on_triangle[i]))
+        requests[open++] = {i, part_s(k)};
+      else if (on_triangle[i] && seen[k][i] == views_[i].now.triangle &&
+               (lights[k][i] != lights[k - 1][i] || lights[k][i] != lights[k + 1][i]))
+        ahead_[i].push_back(sampler_.resample({i, part_s(k)}, views_[i].now, lights[k][i]));
+    }
+    sampler_.trace({requests.data(), open}, {samples.data(), open});
+    for (std::size_t m = 0; m < open; ++m) ahead_[requests[m].pixel].push_back(samples[m]);
   }
+}
+
+void AdaptiveTile::look_at_shadows(const Edges& edges, const std::bitset<kTilePixels>& pixels,
+                                   double t_s, std::span<LightSet> lights) {
+  std::array<SampleRequest, kTilePixels> requests;
+  std::array<const ViewSample*, kTilePixels> like;
+  std::array<LightSet, kTilePixels> among, found;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    if (!pixels[i]) continue;
+    requests[count] = {i, t_s};
+    like[count] = &views_[i].now;
+    among[count++] = edges.of_shadows[i];
+  }
+  if (count == 0) return;
+  sampler_.look_at_lights({requests.data(), count}, {like.data(), count}, {among.data(), count},
+                          {found.data(), count});
+  for (std::size_t k = 0; k < count; ++k) lights[requests[k].pixel] = found[k];
 }
 
 std::optional<double> AdaptiveTile::sense_lines(std::size_t i) {

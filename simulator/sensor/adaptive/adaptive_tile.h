@@ -69,7 +69,9 @@ class AdaptiveTile {
   /// Among what the pixels see now and at the end of a step.
   struct Edges {
     bool of_surfaces = false;
-    std::bitset<kTilePixels> of_shadows;  ///< the pixels next to one
+    /// By pixel the lights whose shadows end next to it.
+    std::array<LightSet, kTilePixels> of_shadows{};
+    bool any_shadows = false;
   };
   /// What to do with the interval from a pixel's last sample to the next known one.
   struct Judgement {
@@ -83,6 +85,9 @@ class AdaptiveTile {
   [[nodiscard]] Edges find_edges(std::span<const ViewSample> next) const;
   /// Samples the pixels within the step where there are edges.
   void sample_parts(const Edges& edges, double step_px);
+  /// The lights of some pixels at `t_s` if they see the same triangles as now.
+  void look_at_shadows(const Edges& edges, const std::bitset<kTilePixels>& pixels, double t_s,
+                       std::span<LightSet> lights);
   /// Senses pixel `i` up to its next samples, latest first in ahead_[i], as far as their lines are
   /// good; the time of the sample that is missing where one is not.
   [[nodiscard]] std::optional<double> sense_lines(std::size_t i);

@@ -98,6 +98,30 @@ void ViewSampler::look(double t_s, std::span<TriangleId> triangles) {
   statistics_.rays += triangles.size();
 }
 
+void ViewSampler::look_at_lights(std::span<const SampleRequest> requests,
+                                 std::span<const ViewSample* const> like,
+                                 std::span<const LightSet> among, std::span<LightSet> lights) {
+  SACCADE_CHECK(rays_.rays_per_pixel() == 1 && requests.size() <= kRayPacket &&
+                like.size() == requests.size() && among.size() == requests.size() &&
+                lights.size() == requests.size());
+  const std::size_t n = requests.size();
+  std::array<Ray, kRayPacket> rays;
+  std::array<TriangleId, kRayPacket> triangles;
+  std::array<SurfaceSample, kRayPacket> seen;
+  std::array<KnownLights, kRayPacket> known;
+  for (std::size_t k = 0; k < n; ++k) {
+    const CameraFrame& camera = camera_at(requests[k].t_s);
+    rays[k] = {camera.position, camera.rotation * directions(requests[k].pixel)[0],
+               requests[k].t_s};
+    triangles[k] = like[k]->triangle;
+    seen[k] = scene_.sample_surface(rays[k], triangles[k]);
+    known[k] = {like[k]->lights_of_ray & ~among[k], ~like[k]->lights_of_ray & ~among[k]};
+  }
+  scene_.find_lights({rays.data(), n}, {triangles.data(), n}, {seen.data(), n}, {known.data(), n},
+                     lights);
+  statistics_.lit_points += n;
+}
+
 SurfaceSample ViewSampler::surface_like(const SampleRequest& request, const ViewSample& like) {
   SACCADE_CHECK(rays_.rays_per_pixel() == 1);
   const CameraFrame& camera = camera_at(request.t_s);
@@ -125,6 +149,15 @@ ViewSample ViewSampler::resample(const SampleRequest& request, const ViewSample&
   sample.radiance = seen.radiance();
   sample.log_intensity = log_intensity(sample.radiance, options_.log_eps);
   return sample;
+}
+
+ViewSample ViewSampler::resample(const SampleRequest& request, const ViewSample& like,
+                                 LightSet lights) {
+  ViewSample lit = like;
+  lit.lights_of_ray = lights;
+  lit.lights = 0;
+  mix(lights, lit.lights);
+  return resample(request, lit);
 }
 
 bool ViewSampler::find_lights_between(std::size_t pixel, const ViewSample& from,
@@ -155,12 +188,7 @@ void ViewSampler::settle_lights(std::size_t pixel, LightSet lights, ViewSample& 
   const LightSet lit = way_.lighting.lights_at(point_of(pixel, sample)) & open;
   const LightSet known = (sample.lights_of_ray & ~open) | lit;
   const LightSet settled = sample.settled | lights;
-  if (known != sample.lights_of_ray) {
-    sample.lights_of_ray = known;
-    sample.lights = 0;
-    mix(known, sample.lights);
-    sample = resample({pixel, sample.t_s}, sample);
-  }
+  if (known != sample.lights_of_ray) sample = resample({pixel, sample.t_s}, sample, known);
   sample.settled = settled;
 }
 

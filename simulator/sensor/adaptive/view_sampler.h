@@ -46,6 +46,12 @@ class ViewSampler {
   /// The triangles that all pixels of the tile, with one ray each, see at `t_s`.
   void look(double t_s, std::span<TriangleId> triangles);
 
+  /// Which of `among` light what a pixel with one ray sees of the triangle of `like`, its other
+  /// lights being the same, at the times of `requests`, at most kRayPacket of them.
+  void look_at_lights(std::span<const SampleRequest> requests,
+                      std::span<const ViewSample* const> like, std::span<const LightSet> among,
+                      std::span<LightSet> lights);
+
   /// What a pixel with one ray sees at `t_s` just between two samples if it is the triangle of one
   /// of them, with its lights: without a ray and in double precision, which single precision may
   /// confuse next to their edges. Neither is hit: nullopt.
@@ -55,6 +61,9 @@ class ViewSampler {
   /// What a pixel with one ray sees at `t_s` if it sees the triangle and the lights of `like`, as
   /// it does just before and just after: without a ray.
   [[nodiscard]] ViewSample resample(const SampleRequest& request, const ViewSample& like);
+  /// The same under other lights.
+  [[nodiscard]] ViewSample resample(const SampleRequest& request, const ViewSample& like,
+                                    LightSet lights);
 
   /// What a pixel with one ray sees from one sample to a later one if it sees the same triangle and
   /// the same lights all the time: without a ray.
