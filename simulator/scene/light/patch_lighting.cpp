@@ -337,10 +337,10 @@ bool Scene::find_lighting_between(const Eigen::Vector3d& from, const Eigen::Vect
       kAround * (from - eye).norm() *
       (way.squaredNorm() > 0 ? way.normalized() : plane.gradient.unitOrthogonal());
   const Eigen::Vector3d across = plane.gradient.cross(along);
-  const Patch patch{triangle,
-                    side,
-                    {from - along - across, from - along + across, to + along + across,
-                     to + along - across}};
+  const Patch patch{
+      triangle,
+      side,
+      {from - along - across, from - along + across, to + along + across, to + along - across}};
   lighting.shadow_offset = illumination.shadow_offset() * side * plane.gradient;
   lighting.unoccluded = 0;
   lighting.partly_occluded.clear();

@@ -47,12 +47,13 @@ void AdaptiveCamera::step(double duration_s, const Sink& sink) {
     parallel_for(
         tiles_.size(), [&](std::size_t i) { tiles_[i]->start(slice); }, kTilesPerTask);
   started_ = true;
-  std::vector<double> speeds(tiles_.size());
-  for (std::size_t i = 0; i < tiles_.size(); ++i) speeds[i] = tiles_[i]->speed_px_s();
+  std::vector<Surroundings> own(tiles_.size());
+  for (std::size_t i = 0; i < tiles_.size(); ++i)
+    own[i] = {tiles_[i]->speed_px_s(), tiles_[i]->has_edges()};
   parallel_for(
-      tiles_.size(), [&](std::size_t i) { tiles_[i]->advance(slice, around_px_s(i, speeds)); },
+      tiles_.size(), [&](std::size_t i) { tiles_[i]->advance(slice, around(i, own)); },
       kTilesPerTask);
-  audit_.sense(slice, [&](std::size_t i) { return around_px_s(i, speeds); });
+  audit_.sense(slice, [&](std::size_t i) { return around(i, own).speed_px_s; });
   t_s_ = end_s;
   for (std::size_t i = 0; i < tiles_.size(); ++i) {
     const std::size_t before = delivery_.pending().size();
@@ -77,14 +78,18 @@ double AdaptiveCamera::slice_end_s(double duration_s) const {
   return slices_left <= 1 ? until_s : t_s_ + (until_s - t_s_) / slices_left;
 }
 
-double AdaptiveCamera::around_px_s(std::size_t tile, const std::vector<double>& speeds) const {
+Surroundings AdaptiveCamera::around(std::size_t tile,
+                                    const std::vector<Surroundings>& tiles) const {
   const int tx = static_cast<int>(tile) % rays_.tiles_x();
   const int ty = static_cast<int>(tile) / rays_.tiles_x();
-  double fastest = 0;
+  Surroundings all{0, false};
   for (int y = std::max(0, ty - 1); y <= std::min(ty + 1, rays_.tiles_y() - 1); ++y)
-    for (int x = std::max(0, tx - 1); x <= std::min(tx + 1, rays_.tiles_x() - 1); ++x)
-      fastest = std::max(fastest, speeds[static_cast<std::size_t>(y * rays_.tiles_x() + x)]);
-  return fastest;
+    for (int x = std::max(0, tx - 1); x <= std::min(tx + 1, rays_.tiles_x() - 1); ++x) {
+      const Surroundings& each = tiles[static_cast<std::size_t>(y * rays_.tiles_x() + x)];
+      all.speed_px_s = std::max(all.speed_px_s, each.speed_px_s);
+      all.have_edges = all.have_edges || each.have_edges;
+    }
+  return all;
 }
 
 std::string AdaptiveCamera::state() const {

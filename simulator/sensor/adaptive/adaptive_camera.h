@@ -50,7 +50,7 @@ class AdaptiveCamera {
 
  private:
   [[nodiscard]] double slice_end_s(double duration_s) const;
-  [[nodiscard]] double around_px_s(std::size_t tile, const std::vector<double>& speeds) const;
+  [[nodiscard]] Surroundings around(std::size_t tile, const std::vector<Surroundings>& tiles) const;
 
   const Scene& scene_;
   const Spline& motion_;

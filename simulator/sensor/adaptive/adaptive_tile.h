@@ -33,9 +33,16 @@ struct AdaptiveSlice {
   static constexpr double kLongest_s = 0.02;
 };
 
+/// What a tile and those around it have come to see: no tile knows of what comes in from another.
+struct Surroundings {
+  double speed_px_s = 0;   ///< of what moves fastest over the image
+  bool have_edges = true;  ///< of surfaces or shadows
+};
+
 /// 4 x 4 event pixels that are sampled with rays: all of them after every half
-/// `max_step_px` of image motion, and each in between where it comes to see another surface or
-/// another light. While it sees one triangle, its signal is an arc, else lines.
+/// `max_step_px` of image motion, four times as rarely far from all edges, and each in between where
+/// it comes to see another surface or another light. While it sees one triangle, its signal is an
+/// arc, else lines.
 class AdaptiveTile {
  public:
   /// All outlive the tile.
@@ -44,11 +51,13 @@ class AdaptiveTile {
 
   /// Sets the pixels' references to the signal at the start of the slice.
   void start(const AdaptiveSlice& slice);
-  /// Senses to the end of the slice. `around_px_s`: how fast what the tiles around see moves.
-  void advance(const AdaptiveSlice& slice, double around_px_s);
+  /// Senses to the end of the slice. `around`: as all tiles were at its start.
+  void advance(const AdaptiveSlice& slice, const Surroundings& around);
 
   /// How fast what the pixels see now moves over the image, at most [px/s].
   [[nodiscard]] double speed_px_s() const { return speed_px_s_; }
+  /// Whether they saw an edge of a surface or of a shadow in the last slice.
+  [[nodiscard]] bool has_edges() const { return has_edges_; }
   /// Of the surfaces that they see now.
   [[nodiscard]] InverseDepthRange inverse_depths() const;
 
@@ -132,6 +141,7 @@ class AdaptiveTile {
   ViewSampler sampler_;
   std::array<Pixel, kTilePixels> views_;
   double speed_px_s_ = 0;
+  bool has_edges_ = true;
   double step_s_ = 0;                                       ///< length of the step at work
   std::array<std::vector<ViewSample>, kTilePixels> ahead_;  ///< scratch, empty between two steps
 };

@@ -114,7 +114,7 @@ void Audit::sense(const AdaptiveSlice& slice,
   if (dense_.empty()) return;
   parallel_for(dense_.size(), [&](std::size_t k) {
     if (!has_started_) dense_[k]->start(slice);
-    dense_[k]->advance(slice, around_px_s(index_[k]));
+    dense_[k]->advance(slice, {around_px_s(index_[k]), true});
     SensedEvents events;
     dense_[k]->take_events(events);
     for (const SensedEvent& event : events) tiles_[k].matcher(event).add_exact(event.t_ns);
