@@ -65,13 +65,15 @@ TEST_P(PatchLightOf, TellsShadowsExactly) {
   EXPECT_EQ(light->lights_at({edge() + 1e-4, -0.05, 0}), 0U);
 }
 
-TEST_P(PatchLightOf, APointIsJudgedInDoublePrecision) {
+TEST_P(PatchLightOf, AWayBetweenTwoPointsIsJudgedInDoublePrecision) {
   const Scene scene =
       floor_under({{Eigen::Vector2d(0.2, -0.2), Eigen::Vector2d(0.9, 0.2)}}, GetParam());
-  const auto lights_at = [&](double x) {
-    const Eigen::Vector3d eye(0, 0, 0.5);
-    return scene.lights_at({eye, Eigen::Vector3d(x, -0.05, 0) - eye}, 0, 1, 1);
-  };
+  const Eigen::Vector3d eye(0, 0, 0.5);
+  const Eigen::Vector3d from(edge() - 2e-5, -0.05, 0);
+  const Eigen::Vector3d to(edge() + 2e-5, -0.05, 0);
+  PatchLighting way;
+  ASSERT_TRUE(scene.find_lighting_between(from, to, eye, 0, 1, way));
+  const auto lights_at = [&](double x) { return way.lights_at({x, -0.05, 0}); };
   // The shadow is that of points just above the floor, some 1e-6 m nearer to its edge.
   EXPECT_EQ(lights_at(edge() - 1e-5), 1U);
   EXPECT_EQ(lights_at(edge() + 1e-5), 0U);
@@ -84,7 +86,10 @@ TEST_P(PatchLightOf, APointIsJudgedInDoublePrecision) {
   ASSERT_NE(light, nullptr);
   EXPECT_EQ(light->lights_at({lit - 1e-10, -0.05, 0}), 1U) << "as the exact sampler sees it";
   EXPECT_EQ(light->lights_at({dark + 1e-10, -0.05, 0}), 0U);
-  EXPECT_EQ(scene.lights_at({{0, 0, 0.5}, {0, 0, -0.5}}, 0, 1, 0), 0U) << "none is asked for";
+  ASSERT_TRUE(scene.find_lighting_between(from, from, eye, 0, 1, way)) << "a way of no length";
+  EXPECT_EQ(way.lights_at(from), 1U);
+  ASSERT_TRUE(scene.find_lighting_between(from, to, eye, 0, 0, way));
+  EXPECT_EQ(way.lights_at(from), 0U) << "none is asked for";
 }
 
 TEST_P(PatchLightOf, LeavesNoLightBetweenNeighbours) {
@@ -156,10 +161,14 @@ TEST(PatchLighting, FindsSmallThingsUnderTheSunOfALargeScene) {
       ASSERT_NE(light, nullptr);
       EXPECT_EQ(light->lights_at({shadow.x(), shadow.y(), 0}), 0U) << half;
     }
-    const Eigen::Vector3d eye(shadow.x(), shadow.y(), 0.5);
     const TriangleId ground = shadow.y() < shadow.x() ? 0 : 1;
-    EXPECT_EQ(scene.lights_at({eye, {0, 0, -0.5}}, ground, 1, 1), 0U) << height;
-    EXPECT_EQ(scene.lights_at({eye, {0, 0.005, -0.5}}, ground, 1, 1), 1U) << height;
+    const Eigen::Vector3d in_shadow(shadow.x(), shadow.y(), 0);
+    const Eigen::Vector3d beside = in_shadow + Eigen::Vector3d(0, 0.005, 0);
+    PatchLighting between;
+    ASSERT_TRUE(scene.find_lighting_between(in_shadow, beside, {shadow.x(), shadow.y(), 0.5},
+                                            ground, 1, between));
+    EXPECT_EQ(between.lights_at(in_shadow), 0U) << height;
+    EXPECT_EQ(between.lights_at(beside), 1U) << height;
   }
 }
 
