@@ -47,6 +47,33 @@ double longest_path_s(std::span<const Event> events, const PathEstimate& start,
 
 constexpr double kPathGrowth = 1.15;  ///< of the path, from round to round
 
+/// How much more the given poses' rotation moves the image than their translation, at this depth:
+/// by all of their way and by what their acceleration adds to it in as much time again.
+double rotation_ratio(const Trajectory& given, double depth_m) {
+  constexpr double kLeast = 0.05;  // or its inverse: nothing moves in one way alone for long
+  const double length_s = given.end_s() - given.start_s();
+  const Twist way = (given.poses().front().world_from_camera.inverse() *
+                     given.poses().back().world_from_camera)
+                        .log();
+  const Twist more = 0.5 * length_s * length_s * last_acceleration(given).rate;
+  const double translation = (way.head<3>().norm() + more.head<3>().norm()) / depth_m;
+  const double rotation = way.tail<3>().norm() + more.tail<3>().norm();
+  if (!(rotation > 0 || translation > 0)) return 1;
+  return std::clamp(rotation / std::max(translation, kLeast * rotation), kLeast, 1 / kLeast);
+}
+
+/// Edges hardly distinguish a rotation from the translation that moves the image alike. What they
+/// leave open is shared out by the sigmas of both: in equal parts, a camera on a slider would turn
+/// by half of what it is faster than extrapolated. As the given poses moved, so it goes on.
+PathRefinementOptions following(const Trajectory& given, double depth_m,
+                                PathRefinementOptions options) {
+  // Of the path from round to round, which is extrapolated anew each time by what was found.
+  constexpr double kSmoothness_px = 0.1;
+  options.adjustment.smoothness_sigma_px = kSmoothness_px;
+  options.adjustment.rotation_sigma_ratio = rotation_ratio(given, depth_m);
+  return options;
+}
+
 /// Where the motion is a rotation, or nearly none, no depth is found, and the one that is assumed
 /// matters little. The path is extrapolated only for as long as its events show too few edges.
 FirstMap map_of_assumed_depth(std::span<const Event> events, const PathEstimate& start,
@@ -113,7 +140,10 @@ FirstMap first_map(std::span<const Event> events, const PathEstimate& start, con
       assumed_depth_m(within(events, start.poses), start, mapper, limits.near_m, otherwise_m);
   assumed.mapping = mapper.map(within(events, start.poses), assumed.path);
   if (assumed.mapping.keyframe.edges.size() >= options.min_edges) return assumed;
-  const PathRefinement refinement(measuring_rotation(options.refinement, gyroscope), camera);
+  const PathRefinement refinement(
+      measuring_rotation(
+          following(start.poses, *assumed.path.typical_depth_m, options.refinement), gyroscope),
+      camera);
   const double start_s = start.poses.start_s();
   const double longest_s = longest_path_s(events, start, camera, options, gyroscope);
   const PathAcceleration acceleration = last_acceleration(start.poses);
