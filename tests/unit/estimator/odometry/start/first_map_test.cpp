@@ -103,6 +103,27 @@ TEST(FirstMap, GivenPosesThatShowTooLittleAreCarriedOn) {
   EXPECT_GT(worst_of(blind, kGiven_s, kWhole_s).rad, 3 * found.rad) << "the events say more";
 }
 
+TEST(FirstMap, ACameraThatOnlySlidesIsNotTurned) {
+  // On a slider, faster and faster: more than the acceleration of what is given tells.
+  const testing::Motion slide = [](double t_s) {
+    return Rigid3(so3_exp(Eigen::Vector3d::Zero()), {1.5 * t_s * t_s + 15 * t_s * t_s * t_s, 0, 0});
+  };
+  const Events slid = corner().simulate(slide, 0, kWhole_s, 1e-3, 0.15);
+  PathEstimate start;
+  start.poses = testing::trajectory_of(slide, kGiven_s);
+  start.fixed_until_s = start.given_until_s = kGiven_s;
+  FirstMapOptions options = carried();
+  options.min_edges = 1000000;
+  const FirstMap first =
+      first_map(slid, start, Mapper(quick_mapping(), corner().camera()), corner().camera(), options, {});
+  const double end_s = first.path.poses.end_s();
+  ASSERT_GT(end_s, kGiven_s + 0.05);
+  // In equal parts the rest would turn it by 0.013 rad.
+  const Rigid3 error = slide(end_s).inverse() * first.path.poses.at_clamped(end_s);
+  EXPECT_LT(so3_log(error.rotation()).norm(), 0.001);
+  EXPECT_LT(error.translation().norm(), 0.03 * testing::kCornerDepth_m);
+}
+
 TEST(FirstMap, IsTheSameForAnyNumberOfThreads) {
   set_thread_count(1);
   const FirstMap one = made(given(), carried());
