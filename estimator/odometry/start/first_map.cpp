@@ -52,9 +52,9 @@ constexpr double kPathGrowth = 1.15;  ///< of the path, from round to round
 double rotation_ratio(const Trajectory& given, double depth_m) {
   constexpr double kLeast = 0.05;  // or its inverse: nothing moves in one way alone for long
   const double length_s = given.end_s() - given.start_s();
-  const Twist way = (given.poses().front().world_from_camera.inverse() *
-                     given.poses().back().world_from_camera)
-                        .log();
+  const Twist way =
+      (given.poses().front().world_from_camera.inverse() * given.poses().back().world_from_camera)
+          .log();
   const Twist more = 0.5 * length_s * length_s * last_acceleration(given).rate;
   const double translation = (way.head<3>().norm() + more.head<3>().norm()) / depth_m;
   const double rotation = way.tail<3>().norm() + more.tail<3>().norm();
@@ -141,8 +141,8 @@ FirstMap first_map(std::span<const Event> events, const PathEstimate& start, con
   assumed.mapping = mapper.map(within(events, start.poses), assumed.path);
   if (assumed.mapping.keyframe.edges.size() >= options.min_edges) return assumed;
   const PathRefinement refinement(
-      measuring_rotation(
-          following(start.poses, *assumed.path.typical_depth_m, options.refinement), gyroscope),
+      measuring_rotation(following(start.poses, *assumed.path.typical_depth_m, options.refinement),
+                         gyroscope),
       camera);
   const double start_s = start.poses.start_s();
   const double longest_s = longest_path_s(events, start, camera, options, gyroscope);

@@ -114,8 +114,8 @@ TEST(FirstMap, ACameraThatOnlySlidesIsNotTurned) {
   start.fixed_until_s = start.given_until_s = kGiven_s;
   FirstMapOptions options = carried();
   options.min_edges = 1000000;
-  const FirstMap first =
-      first_map(slid, start, Mapper(quick_mapping(), corner().camera()), corner().camera(), options, {});
+  const FirstMap first = first_map(slid, start, Mapper(quick_mapping(), corner().camera()),
+                                   corner().camera(), options, {});
   const double end_s = first.path.poses.end_s();
   ASSERT_GT(end_s, kGiven_s + 0.05);
   // In equal parts the rest would turn it by 0.013 rad.
