@@ -60,6 +60,8 @@ constexpr double kAroundJump = 1e-3;
 /// Within this part of a step the edge of a shadow is located in double precision: sixteen times
 /// what single precision is wrong by, so that it is within.
 constexpr double kSettled = 1.0 / 16;
+/// Halves of steps are as long as this times what they should be, at most.
+constexpr double kArcSlack = 1.01;
 /// Below this rate a signal does not move [1/s].
 constexpr double kLeastSlope = 1e-12;
 
@@ -105,9 +107,13 @@ void AdaptiveTile::start(const AdaptiveSlice& slice) {
 void AdaptiveTile::advance(const AdaptiveSlice& slice, const Surroundings& around) {
   sampler_.set_poses(slice.poses);
   const double way_px = around.speed_px_s * (slice.to_s - slice.from_s);
-  const double longest_px = kStepPart * options_.max_step_px *
-                            (around.have_edges ? 1.0 : static_cast<double>(kQuietSteps));
-  const double steps = std::max(1.0, std::ceil(way_px / longest_px));
+  const double short_px = kStepPart * options_.max_step_px;
+  const double most_steps = std::max(1.0, std::ceil(way_px / short_px));
+  const double steps =
+      around.have_edges ? most_steps : std::ceil(most_steps / static_cast<double>(kQuietSteps));
+  // An irradiance bends as no texture does: over a long step its parabola would be off by far more.
+  longest_arc_s_ = scene_.is_lit() ? (slice.to_s - slice.from_s) / most_steps
+                                   : std::numeric_limits<double>::infinity();
   has_edges_ = false;
   const double step_px = way_px / steps;
   for (double k = 1; k <= steps; ++k)
@@ -147,10 +153,9 @@ auto AdaptiveTile::find_edges(std::span<const ViewSample> next) const -> Edges {
     if (!is_one_surface(a, b)) {
       edges.of_surfaces = true;
     } else if (a.lights != b.lights) {
-      const LightSet lights = a.lights_of_ray ^ b.lights_of_ray;
-      edges.any_shadows = true;
-      for (const std::size_t pixel : {i, k})
-        edges.of_shadows[pixel] |= lights != 0 ? lights : ~LightSet{0};
+      edges.of_lights |= a.lights_of_ray ^ b.lights_of_ray;
+      edges.of_shadows.set(i);
+      edges.of_shadows.set(k);
     }
   };
   const auto compare_pixels = [&](std::size_t i, std::size_t k) {
@@ -190,7 +195,7 @@ void AdaptiveTile::sense_step(double to_s, double step_px) {
 }
 
 void AdaptiveTile::sample_parts(const Edges& edges, double step_px) {
-  if (!edges.of_surfaces && !edges.any_shadows) return;
+  if (!edges.of_surfaces && edges.of_shadows.none()) return;
   has_edges_ = true;
   const std::size_t parts = static_cast<std::size_t>(
       std::clamp(std::ceil(step_px / (kStepPart * options_.max_step_px) * kParts), 1.0,
@@ -208,7 +213,7 @@ void AdaptiveTile::sample_parts(const Edges& edges, double step_px) {
   for (std::size_t i = 0; i < count; ++i) {
     const ViewSample& now = views_[i].now;
     const ViewSample& next = ahead_[i].back();
-    on_triangle[i] = is_single && edges.of_shadows[i] != 0 && now.triangles == next.triangles &&
+    on_triangle[i] = is_single && edges.of_shadows[i] && now.triangles == next.triangles &&
                      now.triangle != kNothing;
     for (std::size_t k = 0; k <= parts; ++k) seen[k][i] = now.triangle;
     for (std::size_t k = 0; k <= parts; ++k) lights[k][i] = now.lights_of_ray;
@@ -226,7 +231,7 @@ void AdaptiveTile::sample_parts(const Edges& edges, double step_px) {
       const bool is_change = is_single
                                  ? seen[k][i] != seen[k - 1][i] || seen[k][i] != seen[k + 1][i]
                                  : edges.of_surfaces;
-      if (is_change || (edges.of_shadows[i] != 0 && !on_triangle[i]))
+      if (is_change || (edges.of_shadows[i] && !on_triangle[i]))
         requests[open++] = {i, part_s(k)};
       else if (on_triangle[i] && seen[k][i] == views_[i].now.triangle &&
                (lights[k][i] != lights[k - 1][i] || lights[k][i] != lights[k + 1][i]))
@@ -247,7 +252,7 @@ void AdaptiveTile::look_at_shadows(const Edges& edges, const std::bitset<kTilePi
     if (!pixels[i]) continue;
     requests[count] = {i, t_s};
     like[count] = &views_[i].now;
-    among[count++] = edges.of_shadows[i];
+    among[count++] = edges.of_lights;
   }
   if (count == 0) return;
   sampler_.look_at_lights({requests.data(), count}, {like.data(), count}, {among.data(), count},
@@ -345,6 +350,8 @@ bool AdaptiveTile::sense_arc(std::size_t i, Pixel& pixel, const ViewSample& next
   const double length_s = next.t_s - pixel.now.t_s;
   if (is_quiet(i, pixel, next)) {
     pixel.before_s = (next.log_intensity - pixel.now.log_intensity) / length_s;
+  } else if (length_s > kArcSlack * longest_arc_s_) {
+    return false;
   } else {
     const SurfaceArc arc = sampler_.arc(i, pixel.now, next);
     if (!arc.is_smooth()) {

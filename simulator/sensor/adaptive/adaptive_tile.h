@@ -78,9 +78,8 @@ class AdaptiveTile {
   /// Among what the pixels see now and at the end of a step.
   struct Edges {
     bool of_surfaces = false;
-    /// By pixel the lights whose shadows end next to it.
-    std::array<LightSet, kTilePixels> of_shadows{};
-    bool any_shadows = false;
+    std::bitset<kTilePixels> of_shadows;  ///< the pixels next to one
+    LightSet of_lights = 0;               ///< whose shadows end there
   };
   /// What to do with the interval from a pixel's last sample to the next known one.
   struct Judgement {
@@ -143,6 +142,7 @@ class AdaptiveTile {
   double speed_px_s_ = 0;
   bool has_edges_ = true;
   double step_s_ = 0;                                       ///< length of the step at work
+  double longest_arc_s_ = 0;                                ///< of the slice at work
   std::array<std::vector<ViewSample>, kTilePixels> ahead_;  ///< scratch, empty between two steps
 };
 
