@@ -44,14 +44,14 @@ void describe_keyframe(config::Fields& fields, KeyframeOptions& options) {
              "baselines.")
       .range(1e-3, 100);
   fields
-      .value("interval_s", options.interval_s,
-             "The least time between two keyframes, in seconds. It bounds the cost of the mapping "
-             "while "
-             "the camera does not turn away from the map. 0 leaves it to distance alone. With "
-             "method edges, while windows are short and depths "
-             "still poor, a quarter of the time since the start will do, with smoothing a quarter "
-             "of the map's baseline in place of the distance, too, and the few keyframes that "
-             "double the baseline of a short start are not counted.")
+      .value(
+          "interval_s", options.interval_s,
+          "The least time between two keyframes, in seconds. It bounds the cost of the mapping "
+          "while the camera does not turn away from the map. 0 leaves it to distance alone. With "
+          "method edges, while windows are short and depths still poor, a quarter of the time "
+          "since the start will do, with smoothing a quarter "
+          "of the map's baseline in place of the distance, too, and the few keyframes that "
+          "double the baseline of a short start are not counted.")
       .range(0, 1e3);
   fields
       .value("handover_s", options.handover_s,

@@ -50,9 +50,9 @@ MappingOptions quick_mapping() {
   return options;
 }
 
-PathEstimate given() {
+PathEstimate given(const testing::Motion& motion = shaken) {
   PathEstimate path;
-  path.poses = testing::trajectory_of(shaken, kGiven_s);
+  path.poses = testing::trajectory_of(motion, kGiven_s);
   path.fixed_until_s = path.given_until_s = kGiven_s;
   return path;
 }
@@ -109,12 +109,9 @@ TEST(FirstMap, ACameraThatOnlySlidesIsNotTurned) {
     return Rigid3(so3_exp(Eigen::Vector3d::Zero()), {1.5 * t_s * t_s + 15 * t_s * t_s * t_s, 0, 0});
   };
   const Events slid = corner().simulate(slide, 0, kWhole_s, 1e-3, 0.15);
-  PathEstimate start;
-  start.poses = testing::trajectory_of(slide, kGiven_s);
-  start.fixed_until_s = start.given_until_s = kGiven_s;
   FirstMapOptions options = carried();
   options.min_edges = 1000000;
-  const FirstMap first = first_map(slid, start, Mapper(quick_mapping(), corner().camera()),
+  const FirstMap first = first_map(slid, given(slide), Mapper(quick_mapping(), corner().camera()),
                                    corner().camera(), options, {});
   const double end_s = first.path.poses.end_s();
   ASSERT_GT(end_s, kGiven_s + 0.05);
@@ -157,13 +154,10 @@ TEST(FirstMap, ARotationIsMappedAtAnAssumedDepth) {
     return Rigid3(so3_exp(t_s * Eigen::Vector3d(0.4, -1.2, 0.3)), {1e-4 * t_s, 0, 0});
   };
   const Events turned = corner().simulate(turn, 0, kWhole_s, 1e-3, 0.15);
-  PathEstimate start;
-  start.poses = testing::trajectory_of(turn, kGiven_s);
-  start.fixed_until_s = start.given_until_s = kGiven_s;
   MappingOptions mapping = quick_mapping();
   mapping.min_edges = 400;
   const Mapper mapper(mapping, corner().camera());
-  const FirstMap first = first_map(turned, start, mapper, corner().camera(), carried(), {});
+  const FirstMap first = first_map(turned, given(turn), mapper, corner().camera(), carried(), {});
   EXPECT_GE(first.mapping.keyframe.edges.size(), Mapper::kMinEdges);
   EXPECT_TRUE(first.is_scale_guessed());
   EXPECT_NEAR(first.path.typical_depth_m.value(), std::sqrt(0.3 * 50), 1e-9)
