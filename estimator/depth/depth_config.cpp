@@ -75,7 +75,16 @@ void describe(config::Fields& fields, DepthConfig& config) {
                        "Nearest and farthest depth that may occur, in metres. A wide range costs "
                        "time and lets more wrong depths through.");
   fields.group(
-      "window", [&](config::Fields& f) { describe(f, config.window); },
+      "window",
+      [&](config::Fields& f) {
+        describe(f, config.window);
+        f.value("parallax_px", config.parallax_px,
+                "Windows over which the camera's translation moves the image by less than this, in "
+                "pixels at the mean depth of the scene, are joined with the next ones, five at "
+                "most, since a slow camera needs longer to tell depths; not where it turns by more "
+                "than half its field of view. 0 joins none.")
+            .range(0, 1000);
+      },
       "Part of the events from which one view is estimated.");
   fields.value("seed", config.seed, "Without effect: this module draws no random numbers.");
 }

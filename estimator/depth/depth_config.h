@@ -25,6 +25,7 @@ struct DepthConfig {
 
   std::string method{Method::kThesis};
   ViewWindowOptions window;
+  double parallax_px = 0;  ///< ParallaxDemand::least_px
   DepthLimits limits;
   ThesisDepthOptions thesis;
   RayDepthOptions rays;

@@ -11,6 +11,7 @@
 #include "core/process/progress.h"
 #include "estimator/depth/depth_config.h"
 #include "estimator/depth/depth_output.h"
+#include "estimator/depth/still_windows.h"
 #include "estimator/run/run_input.h"
 #include "estimator/run/run_writer.h"
 #include "estimator/run/view_run.h"
@@ -57,10 +58,13 @@ RunSummary run_depth(const RunRequest& request) {
   RunTiming timing;
   const Dataset dataset = Dataset::open(request.dataset);
   const ViewInput input = load_view_input(request, dataset, timing);
-  auto windows = cut_windows(input.events(), input.trajectory, config.window, dataset.frames());
+  const double mean_depth_m = mean_depth_of(dataset, config.limits);
+  auto windows = join_still_windows(
+      cut_windows(input.events(), input.trajectory, config.window, dataset.frames()),
+      {dataset.camera().undistorted(), mean_depth_m, config.parallax_px}, config.window,
+      dataset.frames());
   for (ViewWindow& window : windows) window.pose_noise = input.pose_noise;
-  const auto estimator =
-      make_depth_estimator(config, dataset.camera(), mean_depth_of(dataset, config.limits));
+  const auto estimator = make_depth_estimator(config, dataset.camera(), mean_depth_m);
   const auto results = estimate_views<DepthResult>(
       "depth", windows, request.repeat, timing,
       [&](const ViewWindow& window) { return estimator->estimate(window); });

@@ -68,6 +68,13 @@ std::span<const Event> within(std::span<const Event> events, const Trajectory& t
                        ns_from_seconds(trajectory.end_s()));
 }
 
+ViewWindow view_of(std::span<const Event> events, const Trajectory& trajectory,
+                   const ViewWindowOptions& options, const std::vector<StampedFile>& frames) {
+  const double from_s = seconds_from_ns(events.front().t_ns);
+  const double to_s = seconds_from_ns(events.back().t_ns);
+  return {events, &trajectory, reference_time(options.reference, frames, from_s, to_s)};
+}
+
 std::vector<ViewWindow> cut_windows(std::span<const Event> events, const Trajectory& trajectory,
                                     const ViewWindowOptions& options,
                                     const std::vector<StampedFile>& frames) {
@@ -86,13 +93,8 @@ std::vector<ViewWindow> cut_windows(std::span<const Event> events, const Traject
     if (i + 1 < count)
       end = by_time ? count_before(events, ns_from_seconds(start_s + end_fraction * length_s))
                     : static_cast<std::size_t>(end_fraction * size);
-    if (end > begin) {
-      const auto part = events.subspan(begin, end - begin);
-      const double from_s = seconds_from_ns(part.front().t_ns);
-      const double to_s = seconds_from_ns(part.back().t_ns);
-      windows.push_back(
-          {part, &trajectory, reference_time(options.reference, frames, from_s, to_s)});
-    }
+    if (end > begin)
+      windows.push_back(view_of(events.subspan(begin, end - begin), trajectory, options, frames));
     begin = end;
   }
   return windows;

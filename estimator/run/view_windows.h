@@ -39,6 +39,11 @@ struct ViewWindow {
 [[nodiscard]] std::span<const Event> within(std::span<const Event> events,
                                             const Trajectory& trajectory);
 
+/// The window of some consecutive events, one at least, with its view where the options place it.
+[[nodiscard]] ViewWindow view_of(std::span<const Event> events, const Trajectory& trajectory,
+                                 const ViewWindowOptions& options,
+                                 const std::vector<StampedFile>& frames);
+
 /// Cuts the stream into consecutive windows that together hold all of it, as few and as equal as
 /// the options allow. Windows without events, where the camera was at rest, are left out.
 /// `trajectory` spans the events and outlives the windows; `frames` are those of kFrame.

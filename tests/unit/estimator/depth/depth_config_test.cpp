@@ -27,13 +27,17 @@ TEST(DepthConfig, TheShippedFileHoldsTheDefaults) {
 }
 
 TEST(DepthConfig, TheShippedFilesOfTheOtherMethodsHoldTheirDefaults) {
-  const std::pair<const char*, std::string_view> files[] = {{"best", DepthConfig::Method::kRays},
-                                                            {"sweep", DepthConfig::Method::kSweep}};
-  for (const auto& [name, method] : files) {
+  const struct {
+    const char* name;
+    std::string_view method;
+    double parallax_px;
+  } files[] = {{"best", DepthConfig::Method::kRays, 20}, {"sweep", DepthConfig::Method::kSweep, 0}};
+  for (const auto& [name, method, parallax_px] : files) {
     const auto document = config::load(testing::source_path("configs/depth/") + name + ".yaml");
     DepthConfig expected;
     expected.method = method;
     expected.window.reference = ViewWindowOptions::Reference::kMiddle;
+    expected.parallax_px = parallax_px;
     EXPECT_EQ(config::print(config::read<DepthConfig>(document)), config::print(expected)) << name;
   }
 }
