@@ -30,6 +30,7 @@ CALLS = {
     "simulate_noisy": ("d", lambda i, o: simulation("planes", o, 0.1, "events.preset=davis240c")),
     "simulate_lit": ("d", lambda i, o: simulation("office", o, 0.02)),
     "simulate_adaptive": ("d", lambda i, o: simulation("desk", o, 0.05, "events.sampling=adaptive")),
+    "simulate_rig": ("d", lambda i, o: simulation("stereo_planes", o, 0.05)),
     "track": ("r", lambda i, o: run("track", i / "walls", "tracking/accurate", o)),
     "track_best": ("r", lambda i, o: run("track", i / "walls", "tracking/best", o)),
     "depth": ("r", lambda i, o: run("depth", i / "walls", "depth/best", o)),
@@ -47,7 +48,13 @@ CALLS = {
     "calibrate": ("c.yaml", lambda i, o: ["calibrate", i / "noisy", "-o", o, "--page", i / "c.html", "--events-only", "-q"]),
     "render": ("p.png", lambda i, o: ["render", i / "walls", "-o", o, "-q"]),
     "report": ("r.html", lambda i, o: ["report", i / "track", "-o", o, "-q"]),
+    "publish": ("site", lambda i, o: ["report", i / "track", "--publish", o, "-q"]),
     "view_export": ("v.html", lambda i, o: ["view", i / "walls", "--export", o, "-q"]),
+}
+
+# What needs a cluster (tests/slurm/single_node): the jobs outlive a call that is killed, and the next call takes what they did.
+SLURM_CALLS = {
+    "sweep_slurm": ("s", lambda i, o: ["sweep", i / "sweep.yaml", "-o", o, "--launcher", "slurm", "-q"]),
 }
 
 
