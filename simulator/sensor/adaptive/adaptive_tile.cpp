@@ -10,23 +10,12 @@
 namespace saccade {
 namespace {
 
-/// Two triangles that a pixel sees one after the other within this part of a step are the only ones
+/// Two triangles that a pixel sees one after the other within this part of a short step are the only ones
 /// there: which one it sees in between is a matter of their edges alone.
 constexpr double kNeighbours = 0.004;
 /// A crossing is narrowed down to so many tolerances; the line through both ends is more exact by
 /// far where the signal is smooth, and half of this is the error where it jumps.
 constexpr double kBracketTolerances = 4;
-/// Samples of one surface are at most so many texels apart: a texture is bilinear between four
-/// texels, so that within this distance its extrema are few.
-constexpr double kMaxTexels = 0.5;
-/// Two triangles of one object are one surface where the depth changes by less than this from one
-/// sample to the next, relative.
-constexpr double kContinuousDepth = 0.02;
-/// Where a pixel comes to see another surface without a crossing, the change is located to this
-/// fraction of a step: what is seen before and after may still cross.
-constexpr double kChangeFraction = 0.03;
-/// Before and after such a change the signal may be so many times as steep as before.
-constexpr double kChangeMargin = 3;
 /// The steps of a tile are this part of `max_step_px`, which is what the exact camera takes where
 /// surfaces occlude one another: without proofs it is everywhere as blind.
 constexpr double kStepPart = 0.5;
@@ -40,40 +29,11 @@ constexpr std::size_t kQuietSteps = 4;
 /// sixteen, which need a third more time.
 constexpr std::size_t kParts = 8;
 constexpr std::size_t kMostParts = kParts * kQuietSteps;
-/// The error of a line is estimated from the slope before it; it may be larger by this factor.
-constexpr double kErrorMargin = 8;
-/// The slope before a line may equal its own by chance: its error is at least this part of its
-/// change.
-constexpr double kLeastError = 0.2;
-/// The photoreceptor's low pass needs all of the signal. A line that it is given may be wrong by
-/// what the signal changes within a bracket, or by this part of a threshold, which delays no common
-/// event by more [log units].
-constexpr double kFilteredError = 2e-5;
-/// Of the change, at least this part is taken for the error of such a line.
-constexpr double kLeastFilteredError = 0.01;
-/// Nearer to an end, relative to its length, an interval is not divided.
-constexpr double kLeastFraction = 0.05;
-/// Where a light flickers smoothly lines are at most this part of its period.
-constexpr double kPeriodFraction = 1.0 / 16;
-/// A light that jumps is sampled so far before and after [brackets].
-constexpr double kAroundJump = 1e-3;
-/// Within this part of a step the edge of a shadow is located in double precision: sixteen times
+/// Within this part of a short step the edge of a shadow is located in double precision: sixteen times
 /// what single precision is wrong by, so that it is within.
 constexpr double kSettled = 1.0 / 16;
 /// Halves of steps are as long as this times what they should be, at most.
 constexpr double kArcSlack = 1.01;
-/// Below this rate a signal does not move [1/s].
-constexpr double kLeastSlope = 1e-12;
-
-/// Between its jumps a square wave is steady.
-double longest_line_s(std::span<const Flicker> flickers) {
-  double longest_s = std::numeric_limits<double>::infinity();
-  for (const Flicker& flicker : flickers)
-    if (flicker.options().waveform != Waveform::kSquare)
-      longest_s = std::min(longest_s, kPeriodFraction * flicker.period_s());
-  return longest_s;
-}
-
 }  // namespace
 
 AdaptiveTile::AdaptiveTile(const Scene& scene, const PixelRays& rays, const EventOptions& options,
@@ -83,9 +43,7 @@ AdaptiveTile::AdaptiveTile(const Scene& scene, const PixelRays& rays, const Even
       options_(options),
       index_(index),
       bracket_s_(kBracketTolerances * 1e-6 * options.time_tolerance_us),
-      is_filtered_(noise.filter.on()),
-      refractory_s_(noise.refractory_s),
-      longest_line_s_(longest_line_s(scene.flickers())),
+      judge_(scene, bracket_s_, noise, rays.rays_per_pixel()),
       has_arcs_(rays.rays_per_pixel() == 1 && scene.flickers().empty() && !scene.has_spots()),
       is_animated_(scene.is_animated()),
       pixels_(options, noise, seed, rays.tile(index)),
@@ -112,8 +70,8 @@ void AdaptiveTile::advance(const AdaptiveSlice& slice, const Surroundings& aroun
   const double steps =
       around.have_edges ? most_steps : std::ceil(most_steps / static_cast<double>(kQuietSteps));
   // An irradiance bends as no texture does: over a long step its parabola would be off by far more.
-  longest_arc_s_ = scene_.is_lit() ? (slice.to_s - slice.from_s) / most_steps
-                                   : std::numeric_limits<double>::infinity();
+  short_step_s_ = (slice.to_s - slice.from_s) / most_steps;
+  longest_arc_s_ = scene_.is_lit() ? short_step_s_ : std::numeric_limits<double>::infinity();
   has_edges_ = false;
   const double step_px = way_px / steps;
   for (double k = 1; k <= steps; ++k)
@@ -150,7 +108,7 @@ auto AdaptiveTile::find_edges(std::span<const ViewSample> next) const -> Edges {
   const auto width = static_cast<std::size_t>(rays_.tile(index_).width);
   Edges edges;
   const auto compare = [&](const ViewSample& a, const ViewSample& b, std::size_t i, std::size_t k) {
-    if (!is_one_surface(a, b)) {
+    if (!judge_.is_one_surface(a, b)) {
       edges.of_surfaces = true;
     } else if (a.lights != b.lights) {
       edges.of_lights |= a.lights_of_ray ^ b.lights_of_ray;
@@ -261,11 +219,11 @@ void AdaptiveTile::look_at_shadows(const Edges& edges, const std::bitset<kTilePi
 }
 
 std::optional<double> AdaptiveTile::sense_lines(std::size_t i) {
-  Pixel& pixel = views_[i];
+  SignalSoFar& pixel = views_[i];
   std::vector<ViewSample>& ahead = ahead_[i];
   while (!ahead.empty()) {
     if (is_animated_ && is_arc(pixel.now, ahead.back()))
-      if (const auto kink_s = first_kink_s(pixel.now, ahead.back())) {
+      if (const auto kink_s = judge_.first_kink_s(pixel.now, ahead.back())) {
         ahead.push_back(sampler_.resample({i, *kink_s}, pixel.now));
         continue;
       }
@@ -280,7 +238,8 @@ std::optional<double> AdaptiveTile::sense_lines(std::size_t i) {
     }
     if (settle_lights(i, pixel.now, ahead.back())) continue;
     const ViewSample next = ahead.back();
-    const Judgement judgement = judge(i, pixel, next);
+    const LineJudgement judgement = judge_.judge(pixel, next, pixels_.refractory_until_s(i),
+                                                 pixels_.thresholds(i), short_step_s_);
     if (judgement.is_line) {
       sense_line(i, pixel, next);
       ahead.pop_back();
@@ -300,7 +259,7 @@ std::optional<double> AdaptiveTile::sense_lines(std::size_t i) {
 bool AdaptiveTile::settle_lights(std::size_t i, ViewSample& from, ViewSample& to) {
   const LightSet lights = from.lights_of_ray ^ to.lights_of_ray;
   if ((lights & ~(from.settled & to.settled)) == 0 || sampler_.rays_per_pixel() > 1 ||
-      to.t_s - from.t_s > kSettled * step_s_ || from.triangles != to.triangles)
+      to.t_s - from.t_s > kSettled * short_step_s_ || from.triangles != to.triangles)
     return false;
   if (!sampler_.find_lights_between(i, from, to, lights)) return false;
   // What has been sensed stands: where double precision sees it otherwise, rays go on.
@@ -329,26 +288,10 @@ bool AdaptiveTile::is_arc(const ViewSample& from, const ViewSample& to) const {
          has_arcs_ && !scene_.has_normal_map(from.triangle);
 }
 
-bool AdaptiveTile::is_quiet(std::size_t i, const Pixel& pixel, const ViewSample& next) const {
-  const ViewSample& now = pixel.now;
-  const double length_s = next.t_s - now.t_s;
-  const double texels = std::max(std::abs(next.x - now.x), std::abs(next.y - now.y));
-  if (!pixel.has_slope || texels > kMaxTexels || !pixels_.is_idle(i, now.t_s, next.t_s))
-    return false;
-  const double change = next.log_intensity - now.log_intensity;
-  const double error = std::max(kErrorMargin * 0.25 * std::abs(change - pixel.before_s * length_s),
-                                kLeastError * std::abs(change));
-  const Thresholds& thresholds = pixels_.thresholds(i);
-  const double from = thresholds.signal(LinearSample{now.t_s, now.log_intensity});
-  const double to = thresholds.signal(LinearSample{next.t_s, next.log_intensity});
-  const double high = std::max(from, to);
-  const double low = std::min(from, to);
-  return error <= std::min(thresholds.band().upper - high, low - thresholds.band().lower);
-}
-
-bool AdaptiveTile::sense_arc(std::size_t i, Pixel& pixel, const ViewSample& next) {
+bool AdaptiveTile::sense_arc(std::size_t i, SignalSoFar& pixel, const ViewSample& next) {
   const double length_s = next.t_s - pixel.now.t_s;
-  if (is_quiet(i, pixel, next)) {
+  if (pixels_.is_idle(i, pixel.now.t_s, next.t_s) &&
+      LineJudge::is_quiet(pixel, next, pixels_.thresholds(i))) {
     pixel.before_s = (next.log_intensity - pixel.now.log_intensity) / length_s;
   } else if (length_s > kArcSlack * longest_arc_s_) {
     return false;
@@ -372,122 +315,17 @@ bool AdaptiveTile::sense_arc(std::size_t i, Pixel& pixel, const ViewSample& next
 
 bool AdaptiveTile::are_neighbours(const ViewSample& a, const ViewSample& b) const {
   return sampler_.rays_per_pixel() == 1 && a.triangle != b.triangle &&
-         b.t_s - a.t_s <= kNeighbours * step_s_;
+         b.t_s - a.t_s <= kNeighbours * short_step_s_;
 }
 
-bool AdaptiveTile::is_one_surface(const ViewSample& a, const ViewSample& b) const {
-  if (a.triangles == b.triangles) return true;
-  return a.triangle != kNothing && b.triangle != kNothing &&
-         scene_.object(a.triangle) == scene_.object(b.triangle) &&
-         std::abs(a.distance - b.distance) < kContinuousDepth * std::min(a.distance, b.distance);
-}
-
-bool AdaptiveTile::is_continuous(const ViewSample& a, const ViewSample& b) const {
-  return a.lights == b.lights && is_one_surface(a, b);
-}
-
-std::optional<double> AdaptiveTile::first_kink_s(const ViewSample& from,
-                                                 const ViewSample& to) const {
-  const auto first = scene_.first_kink_s(from.triangle, from.t_s, to.t_s);
-  return first || from.triangle == to.triangle ? first
-                                               : scene_.first_kink_s(to.triangle, from.t_s, to.t_s);
-}
-
-auto AdaptiveTile::judge(std::size_t i, const Pixel& pixel, const ViewSample& next) const
-    -> Judgement {
-  const ViewSample& now = pixel.now;
-  const double length_s = next.t_s - now.t_s;
-  if (length_s <= bracket_s_) return {};
-  const bool is_same = now.triangles == next.triangles && now.lights == next.lights;
-  const bool needs_ray = !is_same || sampler_.rays_per_pixel() > 1;
-  // At its end the reference is set to the signal of that time, which is therefore sampled.
-  const double reset_s = pixels_.refractory_until_s(i);
-  if (reset_s >= next.t_s && !is_filtered_) return {};
-  if (reset_s > now.t_s + bracket_s_ && reset_s < next.t_s - bracket_s_)
-    return {false, reset_s, needs_ray};
-  if (const auto jump_s = first_jump(scene_.flickers(), now.t_s, next.t_s)) {
-    const double around_s = kAroundJump * bracket_s_;
-    if (*jump_s - around_s > now.t_s) return {false, *jump_s - around_s, needs_ray};
-    if (*jump_s + around_s < next.t_s) return {false, *jump_s + around_s, needs_ray};
-  }
-  if (is_animated_)
-    if (const auto kink_s = first_kink_s(now, next)) return {false, *kink_s, needs_ray};
-  const double middle_s = 0.5 * (now.t_s + next.t_s);
-  if (length_s > longest_line_s_) return {false, middle_s, needs_ray};
-  const bool is_continuous_there = is_continuous(now, next);
-  const double change = next.log_intensity - now.log_intensity;
-  const double texel = now.level > 0 ? std::exp2(-now.level) : 1;
-  if (is_continuous_there &&
-      std::max(std::abs(next.x - now.x), std::abs(next.y - now.y)) * texel > kMaxTexels)
-    return {false, middle_s, needs_ray};
-  const double normal_texel = now.normal_level > 0 ? std::exp2(-now.normal_level) : 1;
-  if (is_continuous_there &&
-      std::max(std::abs(next.normal_x - now.normal_x), std::abs(next.normal_y - now.normal_y)) *
-              normal_texel >
-          kMaxTexels)
-    return {false, middle_s, needs_ray};
-
-  // How far the signal may be from the line in its middle: a parabola with the slope before it, or
-  // any curve of the same change.
-  const double slope = change / length_s;
-  double error = is_continuous_there ? 0.25 * std::abs(change) : std::abs(change);
-  if (is_continuous_there && pixel.has_slope)
-    error = std::max(kErrorMargin * 0.25 * std::abs(slope - pixel.before_s) * length_s,
-                     kLeastError * std::abs(change));
-  if (is_filtered_) {
-    const bool is_smooth = is_continuous_there && pixel.has_slope;
-    const double filtered_error = is_smooth
-                                      ? std::max(0.25 * std::abs(slope - pixel.before_s) * length_s,
-                                                 kLeastFilteredError * std::abs(change))
-                                      : error;
-    const double tolerated = bracket_s_ * std::abs(slope);
-    if (filtered_error > std::max(tolerated, kFilteredError)) return {false, middle_s, needs_ray};
-  }
-
-  const Thresholds& thresholds = pixels_.thresholds(i);
-  const Band& band = thresholds.band();
-  const double from = thresholds.signal(LinearSample{now.t_s, now.log_intensity});
-  const double to = thresholds.signal(LinearSample{next.t_s, next.log_intensity});
-  if (band.contains(to)) {
-    const double margin =
-        std::min(band.upper - std::max(from, to), std::min(from, to) - band.lower);
-    if (!is_continuous_there) {
-      // The signal may come nearer to the band's ends just before and just after the change.
-      const bool is_clear = kChangeMargin * std::abs(pixel.before_s) * length_s <= margin &&
-                            length_s <= kChangeFraction * step_s_;
-      return is_clear ? Judgement{} : Judgement{false, middle_s, true};
-    }
-    return error <= margin ? Judgement{} : Judgement{false, middle_s, needs_ray};
-  }
-  if (!is_continuous_there) return {false, middle_s, true};
-  // At a fraction f of the line a parabola departs from it by 4 f (1 - f) of that in the middle.
-  const double level = to >= band.upper ? band.upper : band.lower;
-  // A signal that rests on the level has no place where it crosses it.
-  const double fraction = to == from ? 0 : std::clamp((level - from) / (to - from), 0.0, 1.0);
-  const double middle_error_s = error / std::max(std::abs(slope), kLeastSlope);
-  const auto is_exact = [&](double f) {
-    return 2 * 4 * f * (1 - f) * middle_error_s <= bracket_s_;
-  };
-  if (!is_exact(fraction))
-    return {false, now.t_s + std::clamp(fraction, kLeastFraction, 1 - kLeastFraction) * length_s,
-            needs_ray};
-  const double reset = fraction + refractory_s_ / length_s;
-  if (refractory_s_ > 0 && reset * length_s < length_s - bracket_s_ && !is_exact(reset))
-    return {false, now.t_s + reset * length_s, needs_ray};
-  // A line across several thresholds.
-  const double contrast = 0.5 * (band.upper - band.lower);
-  if (std::abs(to - level) >= contrast && !is_exact(0.5)) return {false, middle_s, needs_ray};
-  return {};
-}
-
-void AdaptiveTile::sense_line(std::size_t i, Pixel& pixel, const ViewSample& next) {
+void AdaptiveTile::sense_line(std::size_t i, SignalSoFar& pixel, const ViewSample& next) {
   const LinearSample from{pixel.now.t_s, pixel.now.log_intensity};
   const LinearSample to{next.t_s, next.log_intensity};
   const Thresholds& thresholds = pixels_.thresholds(i);
   if (pixels_.is_noisy() || !thresholds.band().contains(thresholds.signal(to)))
     pixels_.sense(i, LinearSignal(options_.log_eps, 1e-6 * options_.time_tolerance_us), from, to);
-  pixel.has_slope =
-      is_continuous(pixel.now, next) && !first_jump(scene_.flickers(), pixel.now.t_s, next.t_s);
+  pixel.has_slope = judge_.is_continuous(pixel.now, next) &&
+                    !first_jump(scene_.flickers(), pixel.now.t_s, next.t_s);
   if (pixel.has_slope)
     pixel.before_s = (to.log_intensity - from.log_intensity) / (to.t_s - from.t_s);
   pixel.now = next;

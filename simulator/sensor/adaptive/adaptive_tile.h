@@ -9,6 +9,7 @@
 
 #include "simulator/motion/spline_table.h"
 #include "simulator/scene/scene.h"
+#include "simulator/sensor/adaptive/line_judge.h"
 #include "simulator/sensor/adaptive/view_sampler.h"
 #include "simulator/sensor/event_options.h"
 #include "simulator/sensor/motion/image_motion.h"
@@ -69,25 +70,12 @@ class AdaptiveTile {
   void load(StateReader& state);
 
  private:
-  /// A pixel between two samples of the whole tile.
-  struct Pixel {
-    ViewSample now;       ///< up to which it has sensed
-    double before_s = 0;  ///< slope of the signal before that [1/s]
-    bool has_slope = false;
-  };
   /// Among what the pixels see now and at the end of a step.
   struct Edges {
     bool of_surfaces = false;
     std::bitset<kTilePixels> of_shadows;  ///< the pixels next to one
     LightSet of_lights = 0;               ///< whose shadows end there
   };
-  /// What to do with the interval from a pixel's last sample to the next known one.
-  struct Judgement {
-    bool is_line = true;  ///< the line between both ends is good enough
-    double t_s = 0;       ///< else where to sample next
-    bool needs_ray = true;
-  };
-
   /// `step_px`: how far the image moves until then, at most.
   void sense_step(double to_s, double step_px);
   [[nodiscard]] Edges find_edges(std::span<const ViewSample> next) const;
@@ -99,12 +87,8 @@ class AdaptiveTile {
   /// Senses pixel `i` up to its next samples, latest first in ahead_[i], as far as their lines are
   /// good; the time of the sample that is missing where one is not.
   [[nodiscard]] std::optional<double> sense_lines(std::size_t i);
-  [[nodiscard]] Judgement judge(std::size_t i, const Pixel& pixel, const ViewSample& next) const;
   /// Whether nothing but the triangles of two samples can be seen between them.
   [[nodiscard]] bool are_neighbours(const ViewSample& a, const ViewSample& b) const;
-  /// Whether two samples lie on one smooth surface; is_continuous(): under the same lights as well.
-  [[nodiscard]] bool is_one_surface(const ViewSample& a, const ViewSample& b) const;
-  [[nodiscard]] bool is_continuous(const ViewSample& a, const ViewSample& b) const;
   /// Settles which lights light the later of two samples of one triangle, where that is not known
   /// well enough for the time between them; whether there was anything to settle.
   [[nodiscard]] bool settle_lights(std::size_t i, ViewSample& from, ViewSample& to);
@@ -112,17 +96,12 @@ class AdaptiveTile {
   [[nodiscard]] std::optional<ViewSample> resample_settled(std::size_t i, double t_s,
                                                            const ViewSample& from,
                                                            const ViewSample& to);
-  /// The first time between two samples at which the motion of what they see has a kink.
-  [[nodiscard]] std::optional<double> first_kink_s(const ViewSample& from,
-                                                   const ViewSample& to) const;
-  void sense_line(std::size_t i, Pixel& pixel, const ViewSample& next);
+  void sense_line(std::size_t i, SignalSoFar& pixel, const ViewSample& next);
   /// Whether all between two samples follows from what both see.
   [[nodiscard]] bool is_arc(const ViewSample& from, const ViewSample& to) const;
   /// Senses pixel `i`, which sees one triangle up to its next sample. False where that needs more
   /// samples in between.
-  [[nodiscard]] bool sense_arc(std::size_t i, Pixel& pixel, const ViewSample& next);
-  /// Whether the signal stays in the band of pixel `i` until its next sample, by its slope before.
-  [[nodiscard]] bool is_quiet(std::size_t i, const Pixel& pixel, const ViewSample& next) const;
+  [[nodiscard]] bool sense_arc(std::size_t i, SignalSoFar& pixel, const ViewSample& next);
   void update_speed(const AdaptiveSlice& slice);
 
   const Scene& scene_;
@@ -130,18 +109,17 @@ class AdaptiveTile {
   const EventOptions& options_;
   std::size_t index_;
   double bracket_s_;
-  bool is_filtered_;
-  double refractory_s_;
-  double longest_line_s_;  ///< under flickering lights
-  bool has_arcs_;          ///< one ray per pixel, and light without flicker and cones
-  bool is_animated_;       ///< the corners of some triangles move in their body
+  LineJudge judge_;
+  bool has_arcs_;     ///< one ray per pixel, and light without flicker and cones
+  bool is_animated_;  ///< the corners of some triangles move in their body
   PixelBank pixels_;
   EventStatistics statistics_;
   ViewSampler sampler_;
-  std::array<Pixel, kTilePixels> views_;
+  std::array<SignalSoFar, kTilePixels> views_;
   double speed_px_s_ = 0;
   bool has_edges_ = true;
   double step_s_ = 0;                                       ///< length of the step at work
+  double short_step_s_ = 0;                                 ///< of a step among edges
   double longest_arc_s_ = 0;                                ///< of the slice at work
   std::array<std::vector<ViewSample>, kTilePixels> ahead_;  ///< scratch, empty between two steps
 };
