@@ -15,14 +15,26 @@ constexpr int kSlicesPerStage = 12;
 constexpr int kMaxStages = 6;
 constexpr float kMinGrowth = 2;  ///< least ratio of the parts of the window from stage to stage
 constexpr float kMaxPredictionError_px = 1;
-constexpr float kConverged_px =
-    0.5F;  ///< change over the window below which the events stay the same
+// Change over the window below which the events stay the same; until_converged: below which it has.
+constexpr float kSameEvents_px = 0.5F;
+constexpr float kConverged_px = 0.1F;
+constexpr int kLastIterations = 15;
+constexpr double kLastConverged = 0.001;
 constexpr float kObservedWeight = 0.5F;  ///< least weight of the events in a slice that observed it
 constexpr float kMaxInconsistency = 3;   ///< of own and predicted depth, in standard deviations
 constexpr float kSigmaMargin = 2;        ///< on the sigma predicted for the whole window
 // What confirms a predicted depth: a sharper edgel, and a gap to other surfaces in own sigmas.
 constexpr float kMaxConfirmedResidual_px = 0.4F;
 constexpr float kMinGap = 4;
+
+RegressionOptions last_regression(const RefinerOptions& options) {
+  RegressionOptions last = options.regression;
+  if (options.until_converged) {
+    last.iterations = kLastIterations;
+    last.converged = kLastConverged;
+  }
+  return last;
+}
 
 std::nullopt_t drop(std::size_t& count) {
   ++count;
@@ -77,6 +89,7 @@ EdgelRefiner::EdgelRefiner(const EventRays& rays, const RefinerOptions& options,
                            const DepthLimits& limits, const PinholeCamera& camera)
     : rays_(rays),
       options_(options),
+      last_(last_regression(options)),
       limits_(limits),
       camera_(camera),
       gatherer_(rays, options.regression.window),
@@ -87,10 +100,12 @@ std::optional<FittedEdgel> EdgelRefiner::refine(const EdgelSeed& seed, EdgelEven
   const SweepPlane& plane = seed.plane;
   if (found_.has_similar(edge, kSamePlanes * plane.spacing)) return std::nullopt;
   const int slices = rays_.slice_count();
+  const float settled_px = options_.until_converged ? kConverged_px : kSameEvents_px;
   Stage stage = stage_over(plane.first_slice, plane.last_slice, plane.motion_px);
   for (int i = 0; i < kMaxStages; ++i) {
     gatherer_.gather(stage.slices, edge, near_);
-    const RegressionResult result = regress(near_, options_.regression, options_.prior_sigma);
+    const RegressionResult result =
+        regress(near_, stage.is_whole(slices) ? last_ : options_.regression, options_.prior_sigma);
     if (!result.ok) return drop(dropped_.weak);
     if (result.residual_px > kMaxResidual_px) return drop(dropped_.scattered);
     edge = moved(edge, result);
@@ -99,7 +114,7 @@ std::optional<FittedEdgel> EdgelRefiner::refine(const EdgelSeed& seed, EdgelEven
     if (sigma > bound_on_sigma(stage, slices, options_.max_sigma)) return drop(dropped_.uncertain);
     if (found_.has_similar(edge, kSameEdgelDepth * edge.inverse_depth)) return std::nullopt;
     const float shift_px = std::abs(result.change) * stage.motion_px / (2 * edge.inverse_depth);
-    if (stage.is_whole(slices) && shift_px < kConverged_px) return accepted(edge, result, events);
+    if (stage.is_whole(slices) && shift_px < settled_px) return accepted(edge, result, events);
     stage = next_stage(stage, result, edge.inverse_depth, slices);
   }
   return drop(dropped_.scattered);

@@ -22,6 +22,9 @@ struct RefinerOptions {
   RegressionOptions regression;
   double spacing_px = 1.4;
   double max_sigma = 0.015;
+  /// Whether regressions over the whole window go on until they have converged. What they leave else
+  /// is a tenth of a standard deviation, the same for neighbours, so that no fusion takes it out.
+  bool until_converged = false;
   /// Of an inverse depth around that of the stage before [1/m].
   double prior_sigma = std::numeric_limits<double>::infinity();
 };
@@ -78,6 +81,7 @@ class EdgelRefiner {
 
   const EventRays& rays_;
   const RefinerOptions& options_;
+  RegressionOptions last_;  ///< of the last stage
   DepthLimits limits_;
   PinholeCamera camera_;
   RayGatherer gatherer_;

@@ -14,7 +14,6 @@ namespace {
 constexpr std::size_t kUnknowns = 4;  ///< c, m, h, rho; rho last
 constexpr std::size_t kMinEvents = 10;
 constexpr float kMinScale_px = 0.1F;
-constexpr double kConverged = 0.01;  ///< decrease of the sum of squares, in variances, that ends it
 
 using HalfLanes = float __attribute__((vector_size(kLanes / 2 * sizeof(float))));
 
@@ -158,7 +157,7 @@ RegressionResult regress(const RayNeighbourhood& near, const RegressionOptions& 
     p.change -= static_cast<float>(solution.x[3]);
     double decrease = 0;
     for (std::size_t k = 0; k < kUnknowns; ++k) decrease += solution.x[k] * normal.b[k];
-    if (i > 0 && decrease < kConverged * variance) break;
+    if (i > 0 && decrease < options.converged * variance) break;
   }
   const double residual_variance = variance_of(normal);
   result.ok = true;

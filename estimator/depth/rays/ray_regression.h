@@ -12,7 +12,8 @@ struct RegressionOptions {
   /// 1.5 px across holds the events of an edge at the error of a seed; a longer window mixes in
   /// curved edges.
   GatherWindow window;
-  int iterations = 5;                ///< of reweighting, per stage; it has converged by then
+  int iterations = 5;                ///< of reweighting, at most
+  double converged = 0.01;           ///< decrease of the sum of squares, in variances, that ends it
   double tilt_sigma = 0.3;           ///< of m around 0; 0: m = 0
   double hysteresis_sigma_px = 0.5;  ///< of h around 0; 0: h = 0
   double offset_sigma_px = 10;       ///< of c around 0; 0: c = 0

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/random.h"
 
@@ -82,6 +84,33 @@ TEST(RayRegression, EventsOfOtherEdgesHaveNoSay) {
   ASSERT_TRUE(result.ok);
   EXPECT_NEAR(result.change, truth.change, 4 * result.sigma);
   EXPECT_NEAR(result.change, truth.change, 0.005);
+}
+
+/// How far the results of some regressions are from where they would end, in the median, in sigmas.
+double way_left(const RegressionOptions& options) {
+  std::vector<double> left;
+  for (std::uint64_t trial = 0; trial < 101; ++trial) {
+    RayNeighbourhood near = rays_through({}, 60, 0.25, 100 + trial);
+    for (std::size_t i = 0; i < near.count; i += 3)
+      near.across[i] = static_cast<float>(3 * Random(9).uniform(trial, i) - 1.5);
+    RegressionOptions endless = options;
+    endless.iterations = 200;
+    endless.converged = 0;
+    const RegressionResult end = regress(near, endless);
+    left.push_back(
+        std::abs(static_cast<double>((regress(near, options).change - end.change) / end.sigma)));
+  }
+  std::nth_element(left.begin(), left.begin() + 50, left.end());
+  return left[50];
+}
+
+TEST(RayRegression, GoesOnUntilItHasConverged) {
+  RegressionOptions options;
+  options.iterations = 15;
+  options.converged = 0.001;
+  const double left = way_left(options);
+  EXPECT_LT(left, 0.01);
+  EXPECT_LT(3 * left, way_left({}));
 }
 
 TEST(RayRegression, SigmaIsTheDeviationOfTheResult) {
