@@ -18,18 +18,19 @@ async function checkOpening(browser) {
   console.log(`opened in ${Math.round(ms)} ms`);
 }
 
-// A chart far down is drawn when it is scrolled to.
+// A chart far down is drawn when it is scrolled to; of many runs the last one is only unpacked then.
 async function checkScrolling(browser) {
   const drawn = await browser.evaluate(`new Promise((resolve) => {
-    const far = [...document.querySelectorAll(".run [data-plot]")].filter((box) => !box.closest("details:not([open])")).at(-1);
-    if (!far) return resolve("no chart");
     const end = Date.now() + 20000;
     // Runs that are laid out on the way move it.
     const look = () => {
-      far.scrollIntoView();
-      if (far.dataset.drawn !== "yes" && Date.now() < end) return setTimeout(look, 50);
+      const open = [...document.querySelectorAll(".run [data-plot]")].filter((box) => !box.closest("details:not([open])"));
+      const run = [...document.querySelectorAll(".run")].at(-1);
+      const far = open.filter((box) => run.contains(box)).at(-1) ?? (run.querySelector(".packed") ? null : open.at(-1));
+      (far ?? run).scrollIntoView();
+      if (far?.dataset.drawn !== "yes" && Date.now() < end) return setTimeout(look, 50);
       scrollTo(0, 0);
-      resolve(far.dataset.drawn);
+      resolve(far ? far.dataset.drawn : "no chart");
     };
     look();
   })`);
