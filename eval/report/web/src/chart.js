@@ -2,7 +2,7 @@ import uPlot from "uplot";
 import { buttons, download, fileName } from "./download.js";
 import { chartSvg } from "./chart_svg.js";
 import { besidePoints } from "./labels.js";
-import { whenNear } from "./lazy.js";
+import { drawAll, whenNear } from "./lazy.js";
 import { logTicks, short } from "./number.js";
 import { colour, onTheme } from "./theme.js";
 
@@ -182,6 +182,8 @@ export class Chart {
   }
 
   save() {
+    // Its button may be pressed before it has come near the window.
+    drawAll(this.box);
     download(`${fileName(this.spec.title)}.svg`, "image/svg+xml", chartSvg(this.spec, this.plot));
   }
 }
