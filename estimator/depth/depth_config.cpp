@@ -25,9 +25,7 @@ std::unique_ptr<DepthEstimator> make_thesis(const DepthConfig& config, const Pin
 
 std::unique_ptr<DepthEstimator> make_rays(const DepthConfig& config, const PinholeCamera& camera,
                                           double) {
-  RayDepthOptions options = config.rays;
-  options.refiner.until_converged = true;
-  return std::make_unique<RayDepth>(options, config.limits, camera);
+  return std::make_unique<RayDepth>(config.rays, config.limits, camera);
 }
 
 std::unique_ptr<DepthEstimator> make_sweep(const DepthConfig& config, const PinholeCamera& camera,

@@ -52,7 +52,8 @@ void say_what_is_poor(std::span<const DepthResult> results) {
 }  // namespace
 
 RunSummary run_depth(const RunRequest& request) {
-  const auto config = read_config<DepthConfig>(request);
+  auto config = read_config<DepthConfig>(request);
+  config.rays.refiner.until_converged = true;
   RunWriter writer(request);
 
   RunTiming timing;

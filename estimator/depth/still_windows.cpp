@@ -14,8 +14,8 @@ namespace saccade {
 namespace {
 
 constexpr std::size_t kMostJoined = 5;
-/// Poses that are looked at per window: a shaken hand turns back some ten times a second, a tenth of
-/// which is missed by less than a hundredth of its way.
+/// Poses that are looked at per window: of 0.4 s, those of a hand that is shaken five times a second
+/// miss its turning points by a fiftieth of its way at most.
 constexpr int kPosesPerWindow = 32;
 /// Mean distance of a pixel from the centre of a square image, in widths of it.
 constexpr double kMeanRadius = 0.38;

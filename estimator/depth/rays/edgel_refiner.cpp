@@ -100,7 +100,6 @@ std::optional<FittedEdgel> EdgelRefiner::refine(const EdgelSeed& seed, EdgelEven
   const SweepPlane& plane = seed.plane;
   if (found_.has_similar(edge, kSamePlanes * plane.spacing)) return std::nullopt;
   const int slices = rays_.slice_count();
-  const float settled_px = options_.until_converged ? kConverged_px : kSameEvents_px;
   Stage stage = stage_over(plane.first_slice, plane.last_slice, plane.motion_px);
   for (int i = 0; i < kMaxStages; ++i) {
     gatherer_.gather(stage.slices, edge, near_);
@@ -114,7 +113,10 @@ std::optional<FittedEdgel> EdgelRefiner::refine(const EdgelSeed& seed, EdgelEven
     if (sigma > bound_on_sigma(stage, slices, options_.max_sigma)) return drop(dropped_.uncertain);
     if (found_.has_similar(edge, kSameEdgelDepth * edge.inverse_depth)) return std::nullopt;
     const float shift_px = std::abs(result.change) * stage.motion_px / (2 * edge.inverse_depth);
-    if (stage.is_whole(slices) && shift_px < settled_px) return accepted(edge, result, events);
+    // What goes on moving by less than would change its events is accepted in the end.
+    const bool goes_on = options_.until_converged && i + 1 < kMaxStages;
+    if (stage.is_whole(slices) && shift_px < (goes_on ? kConverged_px : kSameEvents_px))
+      return accepted(edge, result, events);
     stage = next_stage(stage, result, edge.inverse_depth, slices);
   }
   return drop(dropped_.scattered);
@@ -126,8 +128,7 @@ std::optional<FittedEdgel> EdgelRefiner::confirm(const Edgel& edge,
   if (found_.has_similar(edge, kSameEdgelDepth * edge.inverse_depth)) return std::nullopt;
   gatherer_.gather({0, rays_.slice_count(), 1}, edge, near_);
   const float prior = 1 / (prediction.sigma * prediction.sigma);
-  RegressionResult result =
-      regress(near_, options_.regression, static_cast<double>(prediction.sigma));
+  RegressionResult result = regress(near_, last_, static_cast<double>(prediction.sigma));
   if (!result.ok || result.residual_px > kMaxConfirmedResidual_px) return std::nullopt;
   const Edgel next = moved(edge, result);
   if (!is_plausible(next, edge.pixel)) return std::nullopt;

@@ -81,7 +81,7 @@ class EdgelRefiner {
 
   const EventRays& rays_;
   const RefinerOptions& options_;
-  RegressionOptions last_;  ///< of the last stage
+  RegressionOptions last_;  ///< of regressions over the whole window
   DepthLimits limits_;
   PinholeCamera camera_;
   RayGatherer gatherer_;

@@ -75,7 +75,8 @@ RunSummary refine_depth(const RunRequest& asked, const RefinementConfig& config,
   if (!request.poses_from && !run.record.poses_from.empty())
     request.poses_from = run.record.poses_from;
   if (!request.smooth_poses_s) request.smooth_poses_s = run.record.smooth_poses_s;
-  const auto method = run.config<DepthConfig>();
+  auto method = run.config<DepthConfig>();
+  method.rays.refiner.until_converged = true;  // as the run did
   const GivenPoses given = load_poses(request, dataset);
   const Trajectory& poses = given.trajectory;
   const Events events = load_events(request, dataset);

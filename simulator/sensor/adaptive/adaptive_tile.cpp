@@ -10,8 +10,8 @@
 namespace saccade {
 namespace {
 
-/// Two triangles that a pixel sees one after the other within this part of a short step are the only ones
-/// there: which one it sees in between is a matter of their edges alone.
+/// Two triangles that a pixel sees one after the other within this part of a short step are the only
+/// ones there: which one it sees in between is a matter of their edges alone.
 constexpr double kNeighbours = 0.004;
 /// A crossing is narrowed down to so many tolerances; the line through both ends is more exact by
 /// far where the signal is smooth, and half of this is the error where it jumps.
@@ -29,8 +29,8 @@ constexpr std::size_t kQuietSteps = 4;
 /// sixteen, which need a third more time.
 constexpr std::size_t kParts = 8;
 constexpr std::size_t kMostParts = kParts * kQuietSteps;
-/// Within this part of a short step the edge of a shadow is located in double precision: sixteen times
-/// what single precision is wrong by, so that it is within.
+/// Within this part of a short step the edge of a shadow is located in double precision: sixteen
+/// times what single precision is wrong by, so that it is within.
 constexpr double kSettled = 1.0 / 16;
 /// Halves of steps are as long as this times what they should be, at most.
 constexpr double kArcSlack = 1.01;

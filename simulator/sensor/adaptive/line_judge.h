@@ -36,7 +36,8 @@ class LineJudge {
   [[nodiscard]] LineJudgement judge(const SignalSoFar& pixel, const ViewSample& next,
                                     double reset_s, const Thresholds& thresholds,
                                     double step_s) const;
-  /// Whether the signal of a pixel that sees one triangle stays within its band until `next`.
+  /// Whether the signal of a pixel that sees one triangle stays within its band until `next`. The
+  /// pixel is idle until then (PixelBank::is_idle).
   [[nodiscard]] static bool is_quiet(const SignalSoFar& pixel, const ViewSample& next,
                                      const Thresholds& thresholds);
   /// Whether two samples lie on one smooth surface; is_continuous(): under the same lights as well.

@@ -77,6 +77,13 @@ TEST_F(DepthModule, WritesACompleteRunFolder) {
   EXPECT_GT(pixels, points * 8 / 10);
 }
 
+TEST_F(DepthModule, WindowsOfLittleParallaxAreJoined) {
+  EXPECT_THAT(run_depth(request("apart", "window: {duration_s: 0.06}")).found,
+              HasSubstr("in 5 views"));
+  EXPECT_THAT(run_depth(request("joined", "window: {duration_s: 0.06, parallax_px: 1000}")).found,
+              HasSubstr("in 1 views"));
+}
+
 TEST_F(DepthModule, TheCloudLiesInTheWorldWhereTheViewsSeeIt) {
   run_depth(request("cloud"));
   const auto views = read_view_list(path("cloud") / "views.yaml");

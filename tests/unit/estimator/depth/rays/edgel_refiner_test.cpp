@@ -84,6 +84,31 @@ TEST(EdgelRefiner, SeedsLeadToTheTrueDepth) {
   EXPECT_LT(median(edges), median(seeds) / 5);
 }
 
+/// By how much a further regression over the whole window would change the edgels' depths, in the
+/// median, in their sigmas.
+double change_left(const RefinerOptions& options) {
+  Refined found(glide_recording().events, options);
+  RayGatherer gatherer(found.rays, options.regression.window);
+  RayNeighbourhood near;
+  std::vector<double> left;
+  for (const FittedEdgel& fitted : found.edges) {
+    gatherer.gather({0, found.rays.slice_count(), 1}, fitted.edge, near);
+    RegressionOptions endless = options.regression;
+    endless.iterations = 100;
+    endless.converged = 0;
+    left.push_back(std::abs(static_cast<double>(regress(near, endless).change) /
+                            static_cast<double>(fitted.sigma)));
+  }
+  return median(left);
+}
+
+TEST(EdgelRefiner, GoesOnUntilItHasConvergedWhereItIsAskedTo) {
+  RefinerOptions options;
+  const double early = change_left(options);
+  options.until_converged = true;
+  EXPECT_LT(2 * change_left(options), early);
+}
+
 TEST(EdgelRefiner, AnAssumedDepthIsKeptWithinItsSigma) {
   const Refined refined(glide_recording().events);
   const PinholeCamera& camera = glide_recording().world.camera();
