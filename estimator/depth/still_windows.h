@@ -18,8 +18,9 @@ struct ParallaxDemand {
 /// Joins consecutive windows over which the camera translates too little to tell depths, until it has
 /// moved far enough. Not more than five, so that cost and memory stay bounded while it rests, and not
 /// where it turns by more than half its field of view, since most of what the windows at the ends see
-/// would lie outside the view. What is left at the end joins the windows before it where that is allowed.
-/// `windows` as of cut_windows() with the same `options` and `frames`, which place the joined windows' views.
+/// would lie outside the view. What is left at the end joins the windows before it where that is
+/// allowed. `windows` as of cut_windows() with the same `options` and `frames`, which place the views
+/// of the joined ones.
 [[nodiscard]] std::vector<ViewWindow> join_still_windows(
     const std::vector<ViewWindow>& windows, const ParallaxDemand& demand,
     const ViewWindowOptions& options, const std::vector<StampedFile>& frames = {});

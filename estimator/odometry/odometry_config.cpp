@@ -49,9 +49,9 @@ void describe_keyframe(config::Fields& fields, KeyframeOptions& options) {
           "The least time between two keyframes, in seconds. It bounds the cost of the mapping "
           "while the camera does not turn away from the map. 0 leaves it to distance alone. With "
           "method edges, while windows are short and depths still poor, a quarter of the time "
-          "since the start will do, with smoothing a quarter "
-          "of the map's baseline in place of the distance, too, and the few keyframes that "
-          "double the baseline of a short start are not counted.")
+          "since the start will do, with smoothing a quarter of the map's baseline in place of the "
+          "distance, too, and the few keyframes that double the baseline of a short start are not "
+          "counted.")
       .range(0, 1e3);
   fields
       .value("handover_s", options.handover_s,

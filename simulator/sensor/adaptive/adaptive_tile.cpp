@@ -34,6 +34,7 @@ constexpr std::size_t kMostParts = kParts * kQuietSteps;
 constexpr double kSettled = 1.0 / 16;
 /// Halves of steps are as long as this times what they should be, at most.
 constexpr double kArcSlack = 1.01;
+
 }  // namespace
 
 AdaptiveTile::AdaptiveTile(const Scene& scene, const PixelRays& rays, const EventOptions& options,
