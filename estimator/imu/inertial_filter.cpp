@@ -11,7 +11,9 @@
 namespace saccade {
 namespace {
 
-constexpr int kTheta = 0, kBias = 3, kVelocity = 6, kAccelBias = 9, kPosition = 12;
+using State = InertialState;
+constexpr int kTheta = State::kTheta, kBias = State::kBias, kVelocity = State::kVelocity,
+              kAccelBias = State::kAccelBias, kPosition = State::kPosition;
 using Columns = Eigen::Matrix<double, 15, 3>;
 
 // Noise of a consumer accelerometer; its exact values hardly matter beside the motion of a hand.
@@ -31,13 +33,15 @@ InertialFilter::InertialFilter(const InertialFilterOptions& options,
                                const GyroscopeNoise& gyroscope)
     : options_(options), gyroscope_(gyroscope), rest_(gyroscope.density) {
   const double gyro_sigma = gyroscope.bias_sigma;
-  covariance_.diagonal().segment<3>(kBias).setConstant(gyro_sigma * gyro_sigma);
-  covariance_.diagonal().segment<3>(kAccelBias).setConstant(kAccelBiasSigma * kAccelBiasSigma);
+  state_.covariance.diagonal().segment<3>(kBias).setConstant(gyro_sigma * gyro_sigma);
+  state_.covariance.diagonal()
+      .segment<3>(kAccelBias)
+      .setConstant(kAccelBiasSigma * kAccelBiasSigma);
 }
 
 void InertialFilter::update(const ImuSample& sample) {
   if (!has_last_) {
-    world_from_imu_ = tilt_from_specific_force(sample.specific_force);
+    state_.world_from_imu = tilt_from_specific_force(sample.specific_force);
     start(sample);
     return;
   }
@@ -46,42 +50,41 @@ void InertialFilter::update(const ImuSample& sample) {
   if (dt_s > kMaxImuGap_s) {
     // The rotation during a gap is unknown: the tilt is read again, the heading kept.
     ++gaps_;
-    world_from_imu_ = corrected_tilt(world_from_imu_, sample.specific_force);
+    state_.world_from_imu = corrected_tilt(state_.world_from_imu, sample.specific_force);
     start(sample);
     return;
   }
   propagate(sample, dt_s);
-  const auto window = rest_.add(sample, dt_s, bias_, bias_sigma());
+  const auto window = rest_.add(sample, dt_s, state_.bias, bias_sigma());
   if (window || ++samples_since_update_ >= kSamplesPerUpdate) {
     const double interval_s = interval_s_;
     propagate_covariance();
-    const double sigma = options_.velocity_sigma;
-    measure(kVelocity, -velocity_, sigma * sigma * kVelocityTime_s / interval_s);
+    bound(kVelocity, options_.velocity_sigma, kVelocityTime_s, interval_s);
     if (const auto& reach = options_.position_sigma_m)
-      measure(kPosition, -position_, *reach * *reach * kPositionTime_s / interval_s);
+      bound(kPosition, *reach, kPositionTime_s, interval_s);
   }
   if (window) {
-    measure(kVelocity, -velocity_, kRestSpeedSigma * kRestSpeedSigma);
+    measure(kVelocity, -state_.velocity, kRestSpeedSigma * kRestSpeedSigma);
     const double density = gyroscope_.density;
-    measure(kBias, window->mean_rate - bias_, density * density / window->length_s);
+    measure(kBias, window->mean_rate - state_.bias, density * density / window->length_s);
   }
   last_ = sample;
 }
 
 void InertialFilter::start(const ImuSample& sample) {
   for (const int first : {kTheta, kVelocity, kPosition}) {
-    covariance_.middleRows<3>(first).setZero();
-    covariance_.middleCols<3>(first).setZero();
+    state_.covariance.middleRows<3>(first).setZero();
+    state_.covariance.middleCols<3>(first).setZero();
   }
   // The heading is zero by definition.
-  covariance_.diagonal().segment<2>(kTheta).setConstant(kTiltSigma * kTiltSigma);
-  covariance_.diagonal().segment<3>(kVelocity).setConstant(options_.velocity_sigma *
-                                                           options_.velocity_sigma);
+  state_.covariance.diagonal().segment<2>(kTheta).setConstant(kTiltSigma * kTiltSigma);
+  state_.covariance.diagonal().segment<3>(kVelocity).setConstant(options_.velocity_sigma *
+                                                                 options_.velocity_sigma);
   // A free position starts at 0 by definition.
   const double reach = options_.position_sigma_m.value_or(0);
-  covariance_.diagonal().segment<3>(kPosition).setConstant(reach * reach);
-  velocity_.setZero();
-  position_.setZero();
+  state_.covariance.diagonal().segment<3>(kPosition).setConstant(reach * reach);
+  state_.velocity.setZero();
+  state_.position.setZero();
   force_sum_.setZero();
   interval_s_ = 0;
   samples_since_update_ = 0;
@@ -91,22 +94,24 @@ void InertialFilter::start(const ImuSample& sample) {
 }
 
 void InertialFilter::propagate(const ImuSample& sample, double dt_s) {
-  const Eigen::Vector3d rate = 0.5 * (last_.angular_velocity + sample.angular_velocity) - bias_;
+  const Eigen::Vector3d rate =
+      0.5 * (last_.angular_velocity + sample.angular_velocity) - state_.bias;
   const Eigen::Quaterniond half = so3_exp(0.5 * dt_s * rate);
   // The force acts at the orientation of the middle of the interval.
-  const Eigen::Quaterniond middle = world_from_imu_ * half;
+  const Eigen::Quaterniond middle = state_.world_from_imu * half;
   const Eigen::Vector3d force =
-      middle * Eigen::Vector3d(0.5 * (last_.specific_force + sample.specific_force) - accel_bias_);
+      middle *
+      Eigen::Vector3d(0.5 * (last_.specific_force + sample.specific_force) - state_.accel_bias);
   const Eigen::Vector3d dv = dt_s * (force - Eigen::Vector3d(0, 0, kGravity_m_s2));
-  position_ += dt_s * (velocity_ + 0.5 * dv);
-  velocity_ += dv;
+  state_.position += dt_s * (state_.velocity + 0.5 * dv);
+  state_.velocity += dv;
   force_sum_ += dt_s * force;
   interval_s_ += dt_s;
-  world_from_imu_ = (middle * half).normalized();
+  state_.world_from_imu = (middle * half).normalized();
 }
 
 void InertialFilter::propagate_covariance() {
-  const Eigen::Matrix3d rotation_dt = interval_s_ * world_from_imu_.toRotationMatrix();
+  const Eigen::Matrix3d rotation_dt = interval_s_ * state_.world_from_imu.toRotationMatrix();
   const Eigen::Matrix3d force_skew = skew(force_sum_);
   // P <- F P F^T; F is the identity but for three rows of blocks.
   const auto transform = [&](auto&& theta, auto&& bias, auto&& velocity, auto&& accel_bias,
@@ -115,16 +120,16 @@ void InertialFilter::propagate_covariance() {
     velocity -= force_skew * theta + rotation_dt * accel_bias;
     theta -= rotation_dt * bias;
   };
-  transform(covariance_.middleRows<3>(kTheta), covariance_.middleRows<3>(kBias),
-            covariance_.middleRows<3>(kVelocity), covariance_.middleRows<3>(kAccelBias),
-            covariance_.middleRows<3>(kPosition));
-  transform(covariance_.middleCols<3>(kTheta).transpose(),
-            covariance_.middleCols<3>(kBias).transpose(),
-            covariance_.middleCols<3>(kVelocity).transpose(),
-            covariance_.middleCols<3>(kAccelBias).transpose(),
-            covariance_.middleCols<3>(kPosition).transpose());
+  transform(state_.covariance.middleRows<3>(kTheta), state_.covariance.middleRows<3>(kBias),
+            state_.covariance.middleRows<3>(kVelocity), state_.covariance.middleRows<3>(kAccelBias),
+            state_.covariance.middleRows<3>(kPosition));
+  transform(state_.covariance.middleCols<3>(kTheta).transpose(),
+            state_.covariance.middleCols<3>(kBias).transpose(),
+            state_.covariance.middleCols<3>(kVelocity).transpose(),
+            state_.covariance.middleCols<3>(kAccelBias).transpose(),
+            state_.covariance.middleCols<3>(kPosition).transpose());
   const auto add = [&](int first, double density) {
-    covariance_.diagonal().segment<3>(first).array() += density * density * interval_s_;
+    state_.covariance.diagonal().segment<3>(first).array() += density * density * interval_s_;
   };
   add(kTheta, gyroscope_.density);
   add(kBias, gyroscope_.random_walk);
@@ -135,27 +140,38 @@ void InertialFilter::propagate_covariance() {
   samples_since_update_ = 0;
 }
 
+void InertialFilter::bound(int first, double sigma, double time_s, double interval_s) {
+  const Eigen::Vector3d value = first == kVelocity ? state_.velocity : state_.position;
+  // Of one measurement per `time_s` an interval has this part.
+  Eigen::Matrix3d spread = state_.covariance.block<3, 3>(first, first);
+  spread.diagonal().array() += sigma * sigma;
+  log_evidence_ -= 0.5 * interval_s / time_s *
+                   (value.dot(spread.inverse() * value) + std::log(spread.determinant()));
+  measure(first, -value, sigma * sigma * time_s / interval_s);
+}
+
 void InertialFilter::measure(int first, const Eigen::Vector3d& innovation, double variance) {
-  const Columns cross_covariance = covariance_.middleCols<3>(first);
-  Eigen::Matrix3d sum = covariance_.block<3, 3>(first, first);
+  const Columns cross_covariance = state_.covariance.middleCols<3>(first);
+  Eigen::Matrix3d sum = state_.covariance.block<3, 3>(first, first);
   sum.diagonal().array() += variance;
   const Columns gain = cross_covariance * sum.inverse();
   const Eigen::Matrix<double, 15, 1> correction = gain * innovation;
-  world_from_imu_ = (so3_exp(correction.segment<3>(kTheta)) * world_from_imu_).normalized();
-  bias_ += correction.segment<3>(kBias);
-  velocity_ += correction.segment<3>(kVelocity);
-  accel_bias_ += correction.segment<3>(kAccelBias);
-  position_ += correction.segment<3>(kPosition);
-  covariance_ -= gain * cross_covariance.transpose();
-  covariance_ = (0.5 * (covariance_ + covariance_.transpose())).eval();
+  state_.world_from_imu =
+      (so3_exp(correction.segment<3>(kTheta)) * state_.world_from_imu).normalized();
+  state_.bias += correction.segment<3>(kBias);
+  state_.velocity += correction.segment<3>(kVelocity);
+  state_.accel_bias += correction.segment<3>(kAccelBias);
+  state_.position += correction.segment<3>(kPosition);
+  state_.covariance -= gain * cross_covariance.transpose();
+  state_.covariance = (0.5 * (state_.covariance + state_.covariance.transpose())).eval();
 }
 
 double InertialFilter::bias_sigma() const {
-  return std::sqrt(covariance_.diagonal().segment<3>(kBias).mean());
+  return std::sqrt(state_.covariance.diagonal().segment<3>(kBias).mean());
 }
 
 double InertialFilter::tilt_sigma() const {
-  return std::sqrt(covariance_.diagonal().segment<2>(kTheta).mean());
+  return std::sqrt(state_.covariance.diagonal().segment<2>(kTheta).mean());
 }
 
 }  // namespace saccade

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -13,6 +14,21 @@ namespace saccade {
 struct InertialFilterOptions {
   double velocity_sigma = 1;                     ///< sigma_v [m/s]
   std::optional<double> position_sigma_m = 0.5;  ///< sigma_p; nullopt: the position is free
+};
+
+/// What an inertial filter knows.
+struct InertialState {
+  /// First rows of the errors: true R = exp(theta) R, of the others the differences.
+  static constexpr int kTheta = 0, kBias = 3, kVelocity = 6, kAccelBias = 9, kPosition = 12;
+  using Errors = Eigen::Matrix<double, 15, 1>;
+  using Covariance = Eigen::Matrix<double, 15, 15>;
+
+  Eigen::Quaterniond world_from_imu = Eigen::Quaterniond::Identity();  ///< R
+  Eigen::Vector3d bias = Eigen::Vector3d::Zero();        ///< b, of the gyroscope [rad/s]
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();    ///< v, in the world [m/s]
+  Eigen::Vector3d accel_bias = Eigen::Vector3d::Zero();  ///< c [m/s^2]
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();    ///< p, in the world [m]
+  Covariance covariance = Covariance::Zero();
 };
 
 /// Orientation, velocity, position and both biases by an error-state Kalman filter. What separates
@@ -35,8 +51,15 @@ class InertialFilter {
   /// Adds a sample; times increase (contract).
   void update(const ImuSample& sample);
 
-  [[nodiscard]] const Eigen::Quaterniond& world_from_imu() const { return world_from_imu_; }
-  [[nodiscard]] const Eigen::Vector3d& bias() const { return bias_; }  ///< [rad/s]
+  [[nodiscard]] const InertialState& state() const { return state_; }
+  /// Goes on from what another filter of the same samples knows.
+  void set_state(const InertialState& state) { state_ = state; }
+  /// Log likelihood of the pseudo-measurements since the last call, as of one per time in which
+  /// velocity and position decorrelate; 0 where there were none.
+  [[nodiscard]] double take_log_evidence() { return std::exchange(log_evidence_, 0); }
+
+  [[nodiscard]] const Eigen::Quaterniond& world_from_imu() const { return state_.world_from_imu; }
+  [[nodiscard]] const Eigen::Vector3d& bias() const { return state_.bias; }  ///< [rad/s]
   [[nodiscard]] double bias_sigma() const;  ///< of one component, RMS [rad/s]
   [[nodiscard]] double tilt_sigma() const;  ///< of one component, RMS [rad]
   [[nodiscard]] bool is_at_rest() const { return rest_.is_at_rest(); }
@@ -44,23 +67,20 @@ class InertialFilter {
   [[nodiscard]] int gaps() const { return gaps_; }
 
  private:
-  using Covariance = Eigen::Matrix<double, 15, 15>;
-
   void start(const ImuSample& sample);
   void propagate(const ImuSample& sample, double dt_s);
   void propagate_covariance();
+  /// That three components of the state from `first` on are zero but for a `sigma` that lasts
+  /// `time_s`, over an interval.
+  void bound(int first, double sigma, double time_s, double interval_s);
   /// Kalman update by three components of the state from `first` on, with independent errors.
   void measure(int first, const Eigen::Vector3d& innovation, double variance);
 
   InertialFilterOptions options_;
   GyroscopeNoise gyroscope_;
   RestDetector rest_;
-  Eigen::Quaterniond world_from_imu_ = Eigen::Quaterniond::Identity();
-  Eigen::Vector3d bias_ = Eigen::Vector3d::Zero();        ///< b [rad/s]
-  Eigen::Vector3d accel_bias_ = Eigen::Vector3d::Zero();  ///< c [m/s^2]
-  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();    ///< in the world [m/s]
-  Eigen::Vector3d position_ = Eigen::Vector3d::Zero();    ///< in the world [m]
-  Covariance covariance_ = Covariance::Zero();            ///< of theta, b, v, c, p
+  InertialState state_;
+  double log_evidence_ = 0;
   ImuSample last_;
   bool has_last_ = false;
   int samples_since_update_ = 0;

@@ -75,8 +75,7 @@ std::vector<ImuOrientation> estimate_orientations(std::span<const ImuSample> sam
                                                   const OrientationOptions& options) {
   if (options.method == OrientationOptions::Method::kInertial)
     return run(
-        InertialFilter(options.inertial, options.gyroscope), samples,
-        [](const InertialFilter& filter) {
+        InertialBank(options.inertial, options.gyroscope), samples, [](const InertialBank& filter) {
           return GyroBiasEstimate{0, filter.bias(), filter.bias_sigma(), filter.is_at_rest()};
         });
   ComplementaryOptions complementary = options.complementary;

@@ -8,13 +8,13 @@
 #include "core/config/fields.h"
 #include "core/imu_sample.h"
 #include "estimator/imu/complementary_filter.h"
-#include "estimator/imu/inertial_filter.h"
+#include "estimator/imu/inertial_bank.h"
 
 namespace saccade {
 
 struct OrientationOptions {
   enum class Method {
-    kInertial,       ///< InertialFilter
+    kInertial,       ///< InertialBank
     kComplementary,  ///< ComplementaryFilter
     kGyroscope,      ///< integral of the measured rate, from the tilt of the first sample
   };

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
 
 #include <Eigen/Core>
@@ -13,38 +15,49 @@ constexpr double kGravity_m_s2 = 9.81;
 /// After a longer gap between samples the orientation filters read the tilt again.
 constexpr double kMaxImuGap_s = 0.1;
 
-/// A window in which the sensor did not move.
+/// Time in which the sensor did not move.
 struct RestWindow {
   Eigen::Vector3d mean_rate = Eigen::Vector3d::Zero();  ///< as measured [rad/s]
   double length_s = 0;
 };
 
-/// Finds windows of 0.1 s in which the sensor was at rest (steady state of thesis 3.1.3): the mean
+/// Finds when the sensor was at rest (steady state of thesis 3.1.3), by windows of 0.1 s: the mean
 /// specific force has the magnitude of gravity, the mean rate is a possible bias (below 0.15 rad/s
-/// and within four sigma), and it equals that of the window before. A slow rotation at a constant
-/// rate from the first moment on cannot be told from rest.
+/// and within four sigma), and over four windows in a row neither changes by more than noise does:
+/// a turn that slows down, or that tilts the sensor, is none. A slow rotation about the vertical at
+/// a constant rate cannot be told from rest.
 class RestDetector {
  public:
   /// `gyro_noise_density` [rad/s/sqrt(Hz)].
   explicit RestDetector(double gyro_noise_density) : gyro_noise_density_(gyro_noise_density) {}
 
   /// Adds a sample that holds for `dt_s` > 0. `bias`, `bias_sigma`: what is known of the
-  /// gyroscope's bias, and the sigma of one component [rad/s]. Returns the window that this sample
-  /// completes, if the sensor was at rest in it.
+  /// gyroscope's bias, and the sigma of one component [rad/s]. Where this sample completes a window,
+  /// and the sensor was at rest, returns that of the time at rest that was not returned before.
   std::optional<RestWindow> add(const ImuSample& sample, double dt_s, const Eigen::Vector3d& bias,
                                 double bias_sigma);
 
-  /// Discards the unfinished window, as after a gap.
+  /// Forgets what was measured, as after a gap.
   void interrupt();
 
   [[nodiscard]] bool is_at_rest() const { return is_at_rest_; }  ///< in the last window
 
  private:
+  /// Means over the length of a window.
+  struct Means {
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();
+    Eigen::Vector3d rate = Eigen::Vector3d::Zero();
+  };
+  static constexpr std::size_t kWindows = 4;
+
+  /// Whether the last windows differ from one another by no more than noise.
+  [[nodiscard]] bool is_steady() const;
+
   double gyro_noise_density_;
   double length_s_ = 0;  ///< of the unfinished window
-  Eigen::Vector3d force_sum_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d rate_sum_ = Eigen::Vector3d::Zero();
-  std::optional<Eigen::Vector3d> previous_rate_;
+  Means sums_;           ///< of it, times its length
+  std::array<Means, kWindows> windows_;
+  std::size_t count_ = 0;  ///< finished since the last interruption
   bool is_at_rest_ = false;
 };
 

@@ -1,0 +1,111 @@
+#include "estimator/imu/inertial_bank.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "core/rigid3.h"
+#include "estimator/imu/inertial_filter.h"
+#include "tests/unit/estimator/imu/imu_motion.h"
+
+namespace saccade {
+namespace {
+
+using testing::hand_motion;
+using testing::ImuErrors;
+using testing::ImuMotion;
+using testing::kDegree;
+using testing::kReading_s;
+using testing::reading;
+using testing::tilt_error;
+
+/// Of a gyroscope whose bias nobody knows.
+const ImuErrors kUnknownBias{{0.05, -0.04, 0.03}, {0.03, -0.02, 0.04}, 1e-3, 1e-2};
+
+/// Turned slowly about a horizontal axis by a hand that hardly trembles.
+ImuMotion gentle_motion() {
+  return {[](double t_s) {
+            return so3_exp({1.2, 0.1, -0.4}) * so3_exp({0, 0, 0.6 * t_s});
+          },
+          [](double t_s) {
+            return Eigen::Vector3d(0.1 * std::sin(9 * t_s), 0.1 * std::sin(11 * t_s + 0.5),
+                                   0.1 * std::cos(8 * t_s));
+          }};
+}
+
+/// Gentle for ten seconds, then moved to and fro by 0.3 m, once in two seconds.
+ImuMotion gentle_then_swept() {
+  const ImuMotion gentle = gentle_motion();
+  return {gentle.orientation, [gentle](double t_s) -> Eigen::Vector3d {
+            const double sweep = t_s < 10 ? 0 : 3 * std::sin(M_PI * (t_s - 10));
+            return gentle.acceleration(t_s) + Eigen::Vector3d(sweep, 0, 0);
+          }};
+}
+
+template <class Filter>
+double tilt_rms(Filter filter, const ImuMotion& motion, const ImuErrors& errors, int from, int to) {
+  double squares = 0;
+  for (int i = 0; i <= to; ++i) {
+    filter.update(reading(motion, i, 3, errors));
+    if (i >= from)
+      squares += std::pow(tilt_error(motion, filter.world_from_imu(), i * kReading_s), 2);
+  }
+  return std::sqrt(squares / (to - from + 1));
+}
+
+TEST(InertialBank, FindsTheTiltOfAGentleMotion) {
+  const InertialFilterOptions options;
+  const double one = tilt_rms(InertialFilter(options), gentle_motion(), kUnknownBias, 0, 5000);
+  const double bank = tilt_rms(InertialBank(options), gentle_motion(), kUnknownBias, 0, 5000);
+  EXPECT_GT(one, 2 * kDegree);
+  EXPECT_LT(bank, 0.7 * kDegree);
+}
+
+TEST(InertialBank, ItsFastestFilterHoldsInAHand) {
+  const InertialFilterOptions options{.velocity_sigma = 0.5};
+  const double one = tilt_rms(InertialFilter(options), hand_motion(), {}, 10000, 20000);
+  const double bank = tilt_rms(InertialBank(options), hand_motion(), {}, 10000, 20000);
+  EXPECT_LT(bank, 1.3 * one);
+
+  InertialBank filter(options);
+  for (int i = 0; i <= 10000; ++i) filter.update(reading(hand_motion(), i, 1, {}));
+  EXPECT_GT(filter.probabilities()[0], 0.8);
+}
+
+TEST(InertialBank, FollowsAMotionThatChanges) {
+  InertialBank filter({});
+  for (int i = 0; i < 10000; ++i) filter.update(reading(gentle_then_swept(), i, 2, kUnknownBias));
+  EXPECT_LT(filter.probabilities()[0], 0.1);
+  // A second of the new motion is enough to tell.
+  for (int i = 10000; i < 11000; ++i)
+    filter.update(reading(gentle_then_swept(), i, 2, kUnknownBias));
+  EXPECT_GT(filter.probabilities()[0], 0.9);
+  EXPECT_LT(tilt_rms(InertialBank({}), gentle_then_swept(), kUnknownBias, 11000, 20000),
+            2 * kDegree);
+}
+
+TEST(InertialBank, ProbabilitiesSumToOne) {
+  InertialBank filter({});
+  for (int i = 0; i <= 3000; ++i) {
+    filter.update(reading(hand_motion(), i, 1, {}));
+    const auto& all = filter.probabilities();
+    ASSERT_NEAR(std::accumulate(all.begin(), all.end(), 0.0), 1, 1e-12);
+    for (const double probability : all) ASSERT_GT(probability, 0);
+  }
+  EXPECT_GT(filter.bias_sigma(), 0);
+  EXPECT_GT(filter.tilt_sigma(), 0);
+}
+
+TEST(InertialBank, AGapIsSurvived) {
+  InertialBank filter({});
+  for (int i = 0; i <= 3000; ++i) filter.update(reading(hand_motion(), i, 1, {}));
+  filter.update(reading(hand_motion(), 6000, 1, {}));
+  EXPECT_EQ(filter.gaps(), 1);
+  for (int i = 6001; i <= 20000; ++i) filter.update(reading(hand_motion(), i, 1, {}));
+  EXPECT_LT(tilt_error(hand_motion(), filter.world_from_imu(), 20), 1 * kDegree);
+}
+
+}  // namespace
+}  // namespace saccade

@@ -1,0 +1,83 @@
+#include "estimator/imu/rest_detector.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/rigid3.h"
+#include "tests/unit/estimator/imu/imu_motion.h"
+
+namespace saccade {
+namespace {
+
+using testing::ImuErrors;
+using testing::ImuMotion;
+using testing::kReading_s;
+using testing::reading;
+
+constexpr double kDensity = 1e-3;  // rad/s/sqrt(Hz)
+const ImuErrors kErrors{{0.05, -0.04, 0.03}, {0.03, -0.02, 0.04}, kDensity, 1e-2};
+
+/// Turns about an axis by an angle over time [rad], and stays in place.
+ImuMotion turning(const Eigen::Vector3d& axis, double (*angle)(double)) {
+  return {[=](double t_s) { return so3_exp(angle(t_s) * axis); },
+          [](double) { return Eigen::Vector3d::Zero().eval(); }};
+}
+
+struct Found {
+  double rest_s = 0;
+  Eigen::Vector3d rate_sum = Eigen::Vector3d::Zero();  ///< times the length
+  int first = -1;                                      ///< reading at which a rest was found first
+};
+Found find(const ImuMotion& motion, int readings, const ImuErrors& errors = kErrors) {
+  RestDetector detector(kDensity);
+  Found found;
+  for (int i = 0; i < readings; ++i) {
+    const auto rest = detector.add(reading(motion, i, 5, errors), kReading_s, {0, 0, 0}, 0.1);
+    if (!rest) continue;
+    if (found.first < 0) found.first = i;
+    found.rest_s += rest->length_s;
+    found.rate_sum += rest->length_s * rest->mean_rate;
+  }
+  return found;
+}
+
+TEST(RestDetector, CountsAllOfARest) {
+  const Found found = find(turning({0, 0, 1}, [](double) { return 0.0; }), 2000);
+  EXPECT_EQ(found.first, 399);  // four windows of 0.1 s, which are returned together
+  EXPECT_NEAR(found.rest_s, 2, 1e-9);
+  EXPECT_LT((found.rate_sum / found.rest_s - kErrors.rate_bias).norm(),
+            4 * std::sqrt(3) * kDensity / std::sqrt(2.0));
+}
+
+TEST(RestDetector, ATurnThatComesToRestIsNoneBefore) {
+  // About the vertical, so that gravity tells nothing; the rate falls from 0.3 rad/s to 0 in 2 s.
+  const Found found = find(
+      turning({0, 0, 1}, [](double t_s) { return t_s < 2 ? 0.3 * t_s - 0.075 * t_s * t_s : 0.3; }),
+      3000);
+  EXPECT_GE(found.first, 2000);
+  EXPECT_GT(found.rest_s, 0.5);
+}
+
+TEST(RestDetector, ATiltAtAConstantRateIsNoRest) {
+  // Without a bias, so that it is its gravity alone that tells it from one.
+  const ImuErrors unbiased{{0, 0, 0}, {0, 0, 0}, kDensity, 1e-2};
+  const ImuMotion motion = turning({1, 0, 0}, [](double t_s) { return 0.13 * t_s; });
+  EXPECT_EQ(find(motion, 3000, unbiased).rest_s, 0);
+}
+
+TEST(RestDetector, ForgetsWhatWasBeforeAnInterruption) {
+  RestDetector detector(kDensity);
+  const ImuMotion still = turning({0, 0, 1}, [](double) { return 0.0; });
+  const auto add = [&](int i) {
+    return detector.add(reading(still, i, 5, kErrors), kReading_s, {0, 0, 0}, 0.1);
+  };
+  for (int i = 0; i < 350; ++i) EXPECT_FALSE(add(i));
+  detector.interrupt();
+  for (int i = 350; i < 749; ++i) EXPECT_FALSE(add(i)) << i;
+  EXPECT_TRUE(add(749));
+  EXPECT_TRUE(detector.is_at_rest());
+}
+
+}  // namespace
+}  // namespace saccade
