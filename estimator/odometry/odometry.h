@@ -118,6 +118,9 @@ class Odometry {
 
   [[nodiscard]] const EdgeMap& map() const { return map_; }
 
+  /// The start and what was tracked, as last adjusted; during run() for `progress` alone.
+  [[nodiscard]] std::span<const StampedPose> path() const { return path_; }
+
   /// Whether adjust() is to follow on what run() found.
   [[nodiscard]] bool wants_batch_adjustment() const;
 

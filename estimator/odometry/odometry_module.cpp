@@ -9,6 +9,7 @@
 
 #include "core/config/config.h"
 #include "core/error.h"
+#include "core/io/run/path_so_far.h"
 #include "core/process/progress.h"
 #include "core/stopwatch.h"
 #include "estimator/odometry/metric_world.h"
@@ -121,8 +122,10 @@ struct OdometryFound {
 
 /// The stages that are timed, as often as asked for; `wall_s` of each time.
 OdometryFound run_stages(const OdometryInput& input, const Start& start,
-                         const OdometryConfig& config, int repeat, std::vector<double>& wall_s) {
+                         const OdometryConfig& config, int repeat, PathSoFar& so_far,
+                         std::vector<double>& wall_s) {
   OdometryFound found;
+  so_far.show(start.path.poses.poses());
   std::optional<Odometry> odometry;
   Progress progress("odometry", input.events.size() * static_cast<std::size_t>(repeat), "events");
   for (int i = 0; i < repeat; ++i) {
@@ -131,7 +134,10 @@ OdometryFound run_stages(const OdometryInput& input, const Start& start,
     if (input.imu) odometry->set_imu(*input.imu);
     wall_s.push_back(start.seconds);
     const ScopedTimer clock(wall_s.back());
-    found.result = odometry->run(input.events, start.path, [&](std::size_t n) { progress.add(n); });
+    found.result = odometry->run(input.events, start.path, [&](std::size_t n) {
+      progress.add(n);
+      so_far.show(odometry->path());
+    });
     if (!odometry->wants_batch_adjustment()) continue;
     Progress steps("batch", BatchAdjustmentOptions().steps(), "steps");
     odometry->adjust(input.events, start.path, found.result, [&](std::size_t n) { steps.add(n); });
@@ -255,7 +261,8 @@ RunSummary run_odometry(const RunRequest& request, const OdometryConfig& config)
   timing.events = events.size();
   timing.sequence_s = seconds_from_ns(events.back().t_ns - events.front().t_ns);
 
-  OdometryFound found = run_stages(input, start, config, request.repeat, timing.wall_s);
+  PathSoFar so_far(writer.path(), request.dataset);
+  OdometryFound found = run_stages(input, start, config, request.repeat, so_far, timing.wall_s);
   check_start(input, start, found);
   if (config.align_imu) align(found, input, !start.found);
   report_gaps(events.back().t_ns, found.result.poses);

@@ -10,6 +10,7 @@
 
 #include "core/check.h"
 #include "core/io/files/sha256.h"
+#include "core/io/run/path_so_far.h"
 #include "core/median.h"
 #include "core/version.h"
 
@@ -139,6 +140,7 @@ void RunWriter::finish(const std::string& module, const RunRequest& request, con
   record.command = request.command;
   record.machine = machine_name();
   record.config_yaml = config_yaml;
+  remove_path_so_far(path());
   write_run_record(path() / "run.yaml", record);
   write_atomically(path() / "timing.json", to_json(timing));
   folder_.commit();

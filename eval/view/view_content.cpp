@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/io/files/folder_name.h"
+#include "core/io/run/path_so_far.h"
 
 namespace saccade {
 namespace {
@@ -57,8 +58,11 @@ void add_missing(const fs::path& path, const EventTailOf& tail_of, ViewContent& 
   if (hidden.empty())
     throw InputError(path.string(),
                      "no such folder; name a dataset or a run, or one that a program is writing");
-  ViewUnfinished unfinished{path, hidden, nullptr};
-  if (tail_of) unfinished.events = std::make_shared<UnfinishedEvents>(tail_of(hidden));
+  ViewUnfinished unfinished{path, hidden, nullptr, {}};
+  if (const auto dataset = unfinished.shown_dataset())
+    unfinished.recording = recording_of(*dataset, content);
+  else if (tail_of)
+    unfinished.events = std::make_shared<UnfinishedEvents>(tail_of(hidden));
   content.unfinished.push_back(std::move(unfinished));
 }
 
@@ -94,6 +98,12 @@ ViewRecording::ViewRecording(const fs::path& path) : folder(path), dataset(Datas
   const auto first = dataset.depth_maps().begin();
   if (first != dataset.depth_maps().end() && fs::exists(first->file))
     depth_range = saccade::depth_range(dataset.load_depth(0));
+}
+
+std::optional<fs::path> ViewUnfinished::shown_dataset() const {
+  const auto shown = read_path_so_far(hidden);
+  if (!shown || !fs::is_directory(shown->dataset)) return std::nullopt;
+  return shown->dataset;
 }
 
 std::size_t ViewUnfinished::frames() const {

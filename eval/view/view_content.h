@@ -41,9 +41,12 @@ struct ViewUnfinished {
   std::filesystem::path folder;              ///< the name that it will have
   std::filesystem::path hidden;              ///< where it grows
   std::shared_ptr<UnfinishedEvents> events;  ///< nullptr: nobody knows how to read them
+  std::optional<std::size_t> recording;      ///< of a run that shows its path (PathSoFar)
 
   /// The frames that are complete: frame_<8 digits>.png of these numbers, from 0 on without a gap.
   [[nodiscard]] std::size_t frames() const;
+  /// The dataset of a run that shows its path; nullopt where it shows none, or the dataset is gone.
+  [[nodiscard]] std::optional<std::filesystem::path> shown_dataset() const;
   [[nodiscard]] std::filesystem::path frame(std::size_t index) const;
 };
 

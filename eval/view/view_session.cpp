@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/io/run/path_so_far.h"
 #include "core/version.h"
 #include "eval/report/charts/page_data.h"
 #include "eval/report/html.h"
@@ -135,6 +136,15 @@ ViewAnswer live_frame_answer(ViewQuery& query, const ViewContent& content) {
   return picture_answer(stored_picture(unfinished.frame(id)));
 }
 
+ViewAnswer live_path_answer(ViewQuery& query, const ViewContent& content) {
+  const ViewUnfinished& unfinished =
+      content.unfinished[query.index("unfinished", content.unfinished.size())];
+  query.expect_all_read();
+  const auto shown = read_path_so_far(unfinished.hidden);
+  if (!shown) throw BadRequest(404, "it shows no path");
+  return {200, kJson, path_json(shown->path)};
+}
+
 ViewAnswer errors_answer(ViewQuery& query, const ViewContent& content) {
   const std::size_t index = query.index("run", content.runs.size());
   query.expect_all_read();
@@ -143,10 +153,11 @@ ViewAnswer errors_answer(ViewQuery& query, const ViewContent& content) {
 }
 
 using Answer = ViewAnswer (*)(ViewQuery&, const ViewContent&);
-constexpr std::array<std::pair<const char*, Answer>, 13> kAnswers{
+constexpr std::array<std::pair<const char*, Answer>, 14> kAnswers{
     {{"events", events_answer},
      {"live_events", live_events_answer},
      {"live_frame", live_frame_answer},
+     {"live_path", live_path_answer},
      {"rate", rate_answer},
      {"frame", frame_answer},
      {"depth", depth_answer},
@@ -186,13 +197,15 @@ std::shared_ptr<const ViewContent> ViewSession::content() const {
   return content_;
 }
 
-/// Opens everything anew once a folder that was being written has its name, or is gone.
+/// Opens everything anew once a folder that was being written has its name, or is gone, and when a
+/// run shows its first path.
 void ViewSession::look_for_finished() {
   const std::lock_guard lock(mutex_);
   const auto& unfinished = content_->unfinished;
   const bool changed =
       std::any_of(unfinished.begin(), unfinished.end(), [](const ViewUnfinished& folder) {
-        return std::filesystem::exists(folder.folder) || !std::filesystem::exists(folder.hidden);
+        return std::filesystem::exists(folder.folder) || !std::filesystem::exists(folder.hidden) ||
+               (!folder.recording && folder.shown_dataset());
       });
   if (changed) content_ = std::make_shared<const ViewContent>(ViewContent::open(paths_, tail_of_));
 }

@@ -30,6 +30,7 @@ struct ViewAnswer {
 ///   cloud?recording=  run_cloud?run=                points in the world
 ///   live_events?unfinished=&start_us=&end_us=       UnfinishedEvents::pack()
 ///   live_frame?unfinished=&id=                      a picture
+///   live_path?unfinished=                           path_json(), of a run that shows its path
 ///   errors?run=                                     run_page_data() of the report; null without a truth
 /// What is asked wrongly is answered by 400 or 404 and a sentence, what the files do not yield (they
 /// are damaged, or gone) by 422 and the error.

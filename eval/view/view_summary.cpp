@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/io/run/path_so_far.h"
 #include "eval/picture/view/view_pictures.h"
 #include "eval/report/charts/curve_points.h"
 
@@ -108,6 +109,11 @@ Json unfinished_json(const ViewUnfinished& unfinished) {
             {"frames", unfinished.frames()},
             {"depth_maps", count_files(content / "depth", ".exr")},
             {"mb", std::round(static_cast<double>(bytes) / 1e4) / 100}};
+  if (unfinished.recording) {
+    json["recording"] = *unfinished.recording;
+    if (const auto shown = read_path_so_far(unfinished.hidden))
+      json["path_s"] = shown->path.end_s();
+  }
   if (!unfinished.events) return json;
   unfinished.events->refresh();
   if (const auto reached_us = unfinished.events->reached_us()) {

@@ -1,9 +1,16 @@
 export const kSpeeds = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5];
 
-/// The one time of the page [s], which everything is drawn at.
+/// The one time of the page [s], which everything is drawn at. With `newest`, the moment that a run in the making has come to, it
+/// follows that until somebody goes back, and again from when somebody goes to the end.
 export class Clock {
   constructor(start, end) {
-    Object.assign(this, { start, end, time: start, speed: 1, playing: false, listeners: [] });
+    Object.assign(this, { start, end, time: start, speed: 1, playing: false, follows: true, newest: undefined, listeners: [] });
+  }
+
+  /// A run has come to `newest`.
+  reach(newest) {
+    this.newest = newest;
+    if (this.follows && !this.playing) this.show(newest);
   }
 
   /// Calls `listener(clock)` after every change.
@@ -16,6 +23,11 @@ export class Clock {
   }
 
   seek(time) {
+    this.follows = time >= (this.newest ?? this.end);
+    this.show(this.follows ? this.newest ?? time : time);
+  }
+
+  show(time) {
     this.time = Math.min(this.end, Math.max(this.start, time));
     this.changed();
   }
@@ -24,6 +36,7 @@ export class Clock {
     if (playing === this.playing) return;
     if (playing && this.time >= this.end) this.time = this.start;
     this.playing = playing;
+    this.follows = false;
     this.changed();
     if (!playing) return;
     let before = null;

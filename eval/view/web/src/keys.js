@@ -1,7 +1,7 @@
 const kHelp = [
   ["Space", "play or pause"],
   ["← →", "back, forward by half a window of events; with Shift by ten"],
-  ["Home End", "first, last moment"],
+  ["Home End", "first, last moment; of a run that is being written where it is"],
   [", .", "slower, faster"],
   ["[ ]", "shorter, longer window of events"],
   ["m", "next way to draw events"],

@@ -7,15 +7,16 @@ const kEveryMs = 500;
 const kWindowUs = 20_000;
 
 const soFar = (folder) =>
-  `${folder.name} is being written (${[folder.frames && `${folder.frames} frames`, folder.depth_maps && `${folder.depth_maps} depth maps`, folder.reached_us !== undefined && `events up to ${(folder.reached_us / 1e6).toFixed(3)} s`, `${folder.mb} MB`].filter(Boolean).join(", ")}); it is shown as a whole when it is complete.`;
+  `${folder.name} is being written (${[folder.path_s !== undefined && `its path up to ${folder.path_s.toFixed(3)} s`, folder.frames && `${folder.frames} frames`, folder.depth_maps && `${folder.depth_maps} depth maps`, folder.reached_us !== undefined && `events up to ${(folder.reached_us / 1e6).toFixed(3)} s`, `${folder.mb} MB`].filter(Boolean).join(", ")}); it is shown as a whole when it is complete.`;
 
-/// The newest events and the newest frame of one folder.
+/// The newest events and the newest frame of one folder or, of a run, its path in the 3-D view.
 class LivePanels {
   constructor(box, index) {
     Object.assign(this, { box, index, frames: 0 });
   }
 
-  async show(folder) {
+  async show(folder, page) {
+    if (folder.path_s !== undefined && folder.path_s !== this.pathEnd && folder.recording === page.index) await this.showPath(folder, page);
     if (folder.reached_us !== undefined && folder.reached_us !== this.reached) await this.showEvents(folder);
     if (folder.frames > this.frames) await this.showFrame(folder);
   }
@@ -33,6 +34,14 @@ class LivePanels {
     this.events.figure.dataset.reached = this.reached = reached;
   }
 
+  async showPath({ name, path_s: end }, { space, clock }) {
+    const path = await askJson(`live_path?unfinished=${this.index}`);
+    if (!path) return;
+    space.setPath(name, path);
+    clock.reach(end);
+    this.pathEnd = end;
+  }
+
   async showFrame({ frames }) {
     const answer = await ask(`live_frame?unfinished=${this.index}&id=${frames - 1}`);
     if (!answer) return;
@@ -44,15 +53,18 @@ class LivePanels {
   }
 }
 
-/// Follows the folders that other programs are writing, and opens the page anew when one is complete.
-export function followUnfinished(box, panels, sources) {
-  const count = sources.unfinished.length;
-  if (!count) return;
+/// What is shown as a whole changes with these.
+const kinds = (unfinished) => JSON.stringify(unfinished.map((folder) => folder.recording ?? -1));
+
+/// Follows the folders that other programs are writing, and opens the page anew when one is complete. `page`: the index of its
+/// recording, its clock and its 3-D view, where it has them.
+export function followUnfinished(box, panels, sources, page = {}) {
+  if (!sources.unfinished.length) return;
   const live = sources.unfinished.map((_, i) => new LivePanels(panels, i));
   const show = async ({ unfinished }) => {
-    if (unfinished.length !== count) return location.reload();
+    if (kinds(unfinished) !== kinds(sources.unfinished)) return location.reload();
     box.textContent = unfinished.map(soFar).join(" ");
-    for (const [i, folder] of unfinished.entries()) await live[i].show(folder);
+    for (const [i, folder] of unfinished.entries()) await live[i].show(folder, page);
     setTimeout(poll, kEveryMs);
   };
   const failed = (error) => {

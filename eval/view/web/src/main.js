@@ -26,7 +26,9 @@ function chosen(sources) {
   const index = Math.min(Math.max(0, Number(new URLSearchParams(location.hash.slice(1)).get("recording")) || 0), sources.recordings.length - 1);
   const runs = sources.runs.map((run, i) => ({ ...run, index: i })).filter((run) => index < 0 || run.recording === index || run.recording === undefined)
     .map((run, i) => ({ ...run, colour: `s${i % 8}` }));
-  return { index, recording: sources.recordings[index], runs };
+  const growing = sources.unfinished.map((run, i) => ({ ...run, index: i })).filter((run) => run.recording !== undefined && run.recording === index)
+    .map((run, i) => ({ ...run, colour: `s${(runs.length + i) % 8}` }));
+  return { index, recording: sources.recordings[index], runs, growing };
 }
 
 /// First and last moment [s] of the recording, or of the runs where it is gone.
@@ -39,22 +41,23 @@ async function span({ recording, runs }) {
 
 async function start() {
   const sources = await askJson("sources");
-  if (!isClip) followUnfinished(byId("live"), byId("panels"), sources);
   const nextRecording = startChoice(byId("choose"), sources);
   const shown = chosen(sources);
   showFacts(byId("facts"), shown);
-  if (!shown.recording && !shown.runs.length) return;
+  const follow = (page) => !isClip && followUnfinished(byId("live"), byId("panels"), sources, page);
+  if (!shown.recording && !shown.runs.length) return follow();
   const clock = new Clock(...await span(shown));
   const style = new EventStyle(() => clock.changed());
   const player = new Player(byId("player"), clock, style, shown.recording?.events !== undefined);
   startKeys(byId("keys"), byId("help"), clock, style, nextRecording);
   showPanels(byId("panels"), shown, clock, style, failed);
-  await Promise.all([
-    shown.recording?.events && askJson(`rate?recording=${shown.index}`).then((rate) => rate && player.setRate(rate)),
+  const [space] = await Promise.all([
     showSpace(byId("space"), shown, clock),
+    shown.recording?.events && askJson(`rate?recording=${shown.index}`).then((rate) => rate && player.setRate(rate)),
     showErrors(byId("charts"), shown, clock),
   ].map((part) => part?.catch(failed)));
   clock.changed();
+  follow({ index: shown.index, clock, space });
 }
 
 startTheme();

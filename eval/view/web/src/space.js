@@ -6,6 +6,8 @@ import { poseAt } from "./poses.js";
 // Of the size of the scene.
 const kFrustumSize = 0.25;
 
+const positions = ({ p }) => p.map((pose) => pose.slice(0, 3));
+
 /// The corners of the image at depth 1 in the camera, from its size and [fx, fy, cx, cy].
 const corners = ({ width, height, camera: [fx, fy, cx, cy] }) =>
   [[-0.5, -0.5], [width - 0.5, -0.5], [width - 0.5, height - 0.5], [-0.5, height - 0.5]].map(([x, y]) => new Vector3((x - cx) / fx, (y - cy) / fy, 1));
@@ -19,10 +21,24 @@ export class PathSpace extends SpaceView {
       times: [],
       truth: [],
       cloud,
-      paths: traces.map(({ name, colour: of, path }) => ({ name, colour: of, points: path.p.map((p) => p.slice(0, 3)) })),
+      paths: traces.map(({ name, colour: of, path }) => ({ name, colour: of, points: positions(path) })),
     }));
     this.traces = traces;
     this.corners = recording && corners(recording);
+  }
+
+  /// Takes the path of a run in the making, as far as it has come.
+  setPath(name, path) {
+    const at = this.traces.findIndex((trace) => trace.name === name);
+    if (at < 0) return;
+    this.traces[at].path = path;
+    if (!this.scene) return;
+    this.content.paths[at].points = positions(path);
+    const { low, high } = this.bounds;
+    const isInside = positions(path).every((point) => point.every((v, k) => v >= low[k] && v <= high[k]));
+    // What leaves the view is brought into it; else the reader's view stays as it is.
+    if (isInside) this.build();
+    else this.look();
   }
 
   draw() {

@@ -7,11 +7,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/error.h"
+#include "core/io/run/path_so_far.h"
 #include "eval/view/view_clip.h"
 #include "tests/unit/eval/fake_folders.h"
 
@@ -210,6 +212,35 @@ TEST_F(View, NewestEventsOfWhatIsBeingWrittenAreShown) {
   EXPECT_EQ(sources_of(session)["unfinished"][0]["reached_us"], 11000);
   EXPECT_EQ(session.answer("live_events?unfinished=0&start_us=0&end_us=20000").body.size(),
             8U + 8 * 10);
+}
+
+TEST_F(View, ARunThatIsBeingWrittenShowsItsPathBesideItsDataset) {
+  const testing::TemporaryFolder folder;
+  const fs::path hidden = folder.path() / ".growing.partial-1";
+  fs::create_directories(hidden);
+  ViewSession session({folder.path() / "growing"});
+  EXPECT_EQ(sources_of(session)["recordings"].size(), 0U) << "it shows nothing yet";
+  EXPECT_EQ(session.answer("live_path?unfinished=0").status, 404);
+
+  const std::vector<StampedPose> path{{0.1, Rigid3()}, {0.2, Rigid3()}, {0.3, Rigid3()}};
+  PathSoFar(hidden, dataset()).show(std::span(path).first(2));
+  Json sources = sources_of(session);
+  ASSERT_EQ(sources["recordings"].size(), 1U);
+  ASSERT_EQ(sources["unfinished"].size(), 1U);
+  EXPECT_EQ(sources["unfinished"][0]["recording"], 0);
+  EXPECT_EQ(sources["unfinished"][0]["path_s"], 0.2);
+  EXPECT_FALSE(sources["unfinished"][0].contains("reached_us"));
+
+  PathSoFar(hidden, dataset()).show(path);
+  sources = sources_of(session);
+  EXPECT_EQ(sources["unfinished"][0]["path_s"], 0.3);
+  EXPECT_EQ(Json::parse(session.answer("live_path?unfinished=0").body)["t"].size(), 3U);
+
+  fs::copy(run(), folder.path() / "growing", fs::copy_options::recursive);
+  fs::remove_all(hidden);
+  sources = sources_of(session);
+  EXPECT_EQ(sources["unfinished"].size(), 0U);
+  EXPECT_EQ(sources["runs"].size(), 1U);
 }
 
 TEST_F(View, AClipHoldsWhatThePageAsks) {
