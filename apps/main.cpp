@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <exception>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "apps/verbs.h"
 #include "core/error.h"
 #include "core/process/interruption.h"
+#include "core/refused_path.h"
 #include "core/version.h"
 
 namespace saccade {
@@ -64,6 +66,9 @@ int run_command(int argc, char** argv) {
     return kBadInput;
   } catch (const InputError& error) {
     fmt::print(stderr, "saccade: {}\n", error.what());
+    return kBadInput;
+  } catch (const std::filesystem::filesystem_error& error) {
+    fmt::print(stderr, "saccade: {}\n", refused_path(error).what());
     return kBadInput;
   } catch (const std::exception& error) {
     fmt::print(stderr, "saccade: failed: {}\n", error.what());

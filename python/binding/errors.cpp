@@ -1,8 +1,10 @@
 #include <pybind11/pybind11.h>
 
 #include <exception>
+#include <filesystem>
 
 #include "core/error.h"
+#include "core/refused_path.h"
 #include "python/binding/bindings.h"
 
 namespace saccade::python {
@@ -12,14 +14,20 @@ namespace py = pybind11;
 
 PyObject* input_error_type = nullptr;  ///< lives as long as the interpreter
 
+void raise(const InputError& error) {
+  const auto type = py::reinterpret_borrow<py::object>(input_error_type);
+  py::object instance = type(error.what());
+  instance.attr("location") = error.location();
+  PyErr_SetObject(input_error_type, instance.ptr());
+}
+
 void translate(std::exception_ptr pointer) {
   try {
     if (pointer) std::rethrow_exception(pointer);
   } catch (const InputError& error) {
-    const auto type = py::reinterpret_borrow<py::object>(input_error_type);
-    py::object instance = type(error.what());
-    instance.attr("location") = error.location();
-    PyErr_SetObject(input_error_type, instance.ptr());
+    raise(error);
+  } catch (const std::filesystem::filesystem_error& error) {
+    raise(refused_path(error));
   }
 }
 

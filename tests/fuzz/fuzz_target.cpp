@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/process/progress.h"
+#include "core/refused_path.h"
 
 namespace saccade::fuzz {
 
@@ -38,6 +39,9 @@ bool Feeder::accepts(std::string_view input) {
     return true;
   } catch (const InputError& error) {
     refusal_ = error.what();
+    return false;
+  } catch (const std::filesystem::filesystem_error& error) {
+    refusal_ = refused_path(error).what();
     return false;
   }
 }

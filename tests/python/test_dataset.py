@@ -42,6 +42,11 @@ def test_a_folder_that_is_none_says_so(tmp_path):
         saccade.Dataset(tmp_path / "nothing")
 
 
+def test_a_path_that_the_system_refuses_is_an_input_error(tmp_path):
+    with pytest.raises(saccade.InputError, match="File name too long"):
+        saccade.Dataset(tmp_path / ("a" * 300))
+
+
 def test_windows_are_samples_with_targets(walls):
     windows = saccade.EventWindows(walls, 0.05, stride_s=0.02, targets=["frame", "depth", "pose"])
     assert len(windows) == int((walls.events.duration_s - 0.05) / 0.02) + 1

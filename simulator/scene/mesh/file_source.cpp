@@ -136,12 +136,16 @@ std::optional<Bytes> FileSource::read_unreported(const fs::path& file) const {
 std::string missing_file_problem(const fs::path& path) {
   const FileLocation location = FileLocation::parse(path);
   const fs::path& file = location.archive.empty() ? location.file : location.archive;
-  if (fs::is_regular_file(file)) return {};
+  std::error_code error;  // of a name that is too long, or links in a circle
+  if (fs::is_regular_file(file, error)) return {};
   for (const auto& [prefix, package] : kPackages)
     if (file.string().starts_with(prefix))
       return fmt::format("{} is missing: it is in the Debian package {}; apt-get install {}",
                          file.string(), package, package);
-  return fmt::format("{} {}", file.string(), fs::exists(file) ? "is not a file" : "does not exist");
+  if (error && error != std::errc::no_such_file_or_directory)
+    return fmt::format("{}: {}", file.string(), error.message());
+  return fmt::format("{} {}", file.string(),
+                     fs::exists(file, error) ? "is not a file" : "does not exist");
 }
 
 }  // namespace saccade
