@@ -68,8 +68,10 @@ int run_command(int argc, char** argv) {
     fmt::print(stderr, "saccade: {}\n", error.what());
     return kBadInput;
   } catch (const std::filesystem::filesystem_error& error) {
-    fmt::print(stderr, "saccade: {}\n", refused_path(error).what());
-    return kBadInput;
+    const auto refusal = refused_path(error);
+    fmt::print(stderr, "saccade: {}{}\n",
+               refusal ? "" : "failed: ", refusal ? refusal->what() : error.what());
+    return refusal ? kBadInput : kFailed;
   } catch (const std::exception& error) {
     fmt::print(stderr, "saccade: failed: {}\n", error.what());
     return kFailed;

@@ -39,7 +39,7 @@ class GyroBiasEstimator {
     variance_ = (1 - gain) * (1 - gain) * variance_ + gain * gain * mean_variance;
   }
 
-  /// Discards the unfinished window, as after a gap.
+  /// Forgets what was measured towards a rest, as after a gap.
   void interrupt() { rest_.interrupt(); }
 
   [[nodiscard]] const Eigen::Vector3d& bias() const { return bias_; }  ///< [rad/s]

@@ -13,15 +13,15 @@ namespace {
 constexpr double kChangesPerSecond = 0.1;
 /// The filters are mixed so often, since a mean over covariances costs as much as ten samples.
 constexpr double kMixing_s = 0.1;
-/// Speeds and distances that the filters take for usual, relative to what is stated. Distances are
-/// the same for all: a slow sensor gets as far as a fast one.
-constexpr std::array<double, InertialBank::kFilters> kSpeeds{1, 1.0 / 5, 1.0 / 25};
+/// Velocities that the filters take for usual, relative to the stated sigma. The reach of the position
+/// is the same for all: a slow sensor gets as far as a fast one.
+constexpr std::array<double, InertialBank::kFilters> kVelocityFactors{1, 1.0 / 5, 1.0 / 25};
 /// No filter is given up for good.
 constexpr double kLeastProbability = 1e-12;
 
 using State = InertialState;
 
-InertialFilterOptions with_speed(InertialFilterOptions options, double factor) {
+InertialFilterOptions with_velocity(InertialFilterOptions options, double factor) {
   options.velocity_sigma *= factor;
   return options;
 }
@@ -39,9 +39,9 @@ State moved(const State& state, const State::Errors& by) {
 }  // namespace
 
 InertialBank::InertialBank(const InertialFilterOptions& options, const GyroscopeNoise& gyroscope)
-    : filters_{InertialFilter(with_speed(options, kSpeeds[0]), gyroscope),
-               InertialFilter(with_speed(options, kSpeeds[1]), gyroscope),
-               InertialFilter(with_speed(options, kSpeeds[2]), gyroscope)} {
+    : filters_{InertialFilter(with_velocity(options, kVelocityFactors[0]), gyroscope),
+               InertialFilter(with_velocity(options, kVelocityFactors[1]), gyroscope),
+               InertialFilter(with_velocity(options, kVelocityFactors[2]), gyroscope)} {
   probabilities_.fill(1.0 / kFilters);
 }
 
@@ -64,8 +64,8 @@ void InertialBank::update(const ImuSample& sample) {
 }
 
 void InertialBank::weigh() {
-  Probabilities evidence;
-  for (std::size_t i = 0; i < kFilters; ++i) evidence[i] = filters_[i].take_log_evidence();
+  Probabilities evidence;  // logarithms
+  for (std::size_t i = 0; i < kFilters; ++i) evidence[i] = filters_[i].take_log_likelihood();
   if (evidence == Probabilities{}) return;  // nothing was measured since the last sample
   for (std::size_t i = 0; i < kFilters; ++i) evidence[i] += std::log(probabilities_[i]);
   const double most = *std::max_element(evidence.begin(), evidence.end());
@@ -80,7 +80,11 @@ void InertialBank::weigh() {
 }
 
 void InertialBank::mix(double interval_s) {
-  const double changed = -std::expm1(-kChangesPerSecond * interval_s);
+  // Of a chain that goes from each state to every other one alike; after a long gap nothing is known.
+  constexpr double kOthers = kFilters - 1;
+  const double changed =
+      kOthers / kFilters * -std::expm1(-kChangesPerSecond * interval_s * kFilters / kOthers);
+  for (InertialFilter& filter : filters_) filter.propagate();
   const AllErrors all = errors();
   const State about = filters_[likeliest_].state();
   std::array<State, kFilters> mixed;
@@ -89,7 +93,7 @@ void InertialBank::mix(double interval_s) {
     Probabilities from;
     next[to] = 0;
     for (std::size_t i = 0; i < kFilters; ++i) {
-      from[i] = (i == to ? 1 - changed : changed / (kFilters - 1)) * probabilities_[i];
+      from[i] = (i == to ? 1 - changed : changed / kOthers) * probabilities_[i];
       next[to] += from[i];
     }
     State::Errors mean = State::Errors::Zero();

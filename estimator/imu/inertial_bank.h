@@ -14,9 +14,9 @@ namespace saccade {
 /// Orientation by inertial filters that differ in how fast they take the sensor to move: as stated,
 /// a fifth and a twenty-fifth of that. A bound that is far wider than the motion leaves the tilt of
 /// the first sample and the gyroscope's bias as they are for seconds; one that is too narrow takes
-/// acceleration for tilt. Which of them holds follows from how well each foresees its own velocity
-/// and position, and may change with the motion: an interacting multiple model estimator (H. Blom
-/// and Y. Bar-Shalom, IEEE TAC 33(8), 1988). What it says is the mean over the filters by their
+/// acceleration for tilt. Which of them holds may change with the motion, and follows from the
+/// likelihood of their pseudo-measurements: an interacting multiple model estimator (H. Blom and
+/// Y. Bar-Shalom, IEEE TAC 33(8), 1988). Its estimate is the mean over the filters by their
 /// probabilities.
 class InertialBank {
  public:
@@ -45,7 +45,7 @@ class InertialBank {
   [[nodiscard]] AllErrors errors() const;
   /// Variance of `size` components of the mean from `first` on, each: the filters' and their spread.
   [[nodiscard]] double variance(int first, int size) const;
-  /// Takes what the filters foresaw into account.
+  /// Updates the probabilities by the likelihoods.
   void weigh();
   /// Has each filter go on from a mean over all, by how often motion changes its character.
   void mix(double interval_s);

@@ -54,7 +54,7 @@ void InertialFilter::update(const ImuSample& sample) {
     start(sample);
     return;
   }
-  propagate(sample, dt_s);
+  integrate(sample, dt_s);
   const auto window = rest_.add(sample, dt_s, state_.bias, bias_sigma());
   if (window || ++samples_since_update_ >= kSamplesPerUpdate) {
     const double interval_s = interval_s_;
@@ -93,7 +93,7 @@ void InertialFilter::start(const ImuSample& sample) {
   has_last_ = true;
 }
 
-void InertialFilter::propagate(const ImuSample& sample, double dt_s) {
+void InertialFilter::integrate(const ImuSample& sample, double dt_s) {
   const Eigen::Vector3d rate =
       0.5 * (last_.angular_velocity + sample.angular_velocity) - state_.bias;
   const Eigen::Quaterniond half = so3_exp(0.5 * dt_s * rate);
@@ -142,11 +142,13 @@ void InertialFilter::propagate_covariance() {
 
 void InertialFilter::bound(int first, double sigma, double time_s, double interval_s) {
   const Eigen::Vector3d value = first == kVelocity ? state_.velocity : state_.position;
-  // Of one measurement per `time_s` an interval has this part.
+  // What velocity and position are within `time_s` is one observation, since they hardly change in it.
+  // An interval has its part of that: of the information by a larger variance, of the likelihood by
+  // an exponent.
   Eigen::Matrix3d spread = state_.covariance.block<3, 3>(first, first);
   spread.diagonal().array() += sigma * sigma;
-  log_evidence_ -= 0.5 * interval_s / time_s *
-                   (value.dot(spread.inverse() * value) + std::log(spread.determinant()));
+  log_likelihood_ -= 0.5 * interval_s / time_s *
+                     (value.dot(spread.inverse() * value) + std::log(spread.determinant()));
   measure(first, -value, sigma * sigma * time_s / interval_s);
 }
 

@@ -52,11 +52,14 @@ class InertialFilter {
   void update(const ImuSample& sample);
 
   [[nodiscard]] const InertialState& state() const { return state_; }
-  /// Goes on from what another filter of the same samples knows.
+  /// Brings the covariance to the time of the last sample; else it may be some samples older.
+  void propagate() {
+    if (interval_s_ > 0) propagate_covariance();
+  }
+  /// Goes on from another state at the time of the last sample, to which this one was propagated.
   void set_state(const InertialState& state) { state_ = state; }
-  /// Log likelihood of the pseudo-measurements since the last call, as of one per time in which
-  /// velocity and position decorrelate; 0 where there were none.
-  [[nodiscard]] double take_log_evidence() { return std::exchange(log_evidence_, 0); }
+  /// Log likelihood of the pseudo-measurements since the last call; 0 where there were none.
+  [[nodiscard]] double take_log_likelihood() { return std::exchange(log_likelihood_, 0); }
 
   [[nodiscard]] const Eigen::Quaterniond& world_from_imu() const { return state_.world_from_imu; }
   [[nodiscard]] const Eigen::Vector3d& bias() const { return state_.bias; }  ///< [rad/s]
@@ -68,7 +71,7 @@ class InertialFilter {
 
  private:
   void start(const ImuSample& sample);
-  void propagate(const ImuSample& sample, double dt_s);
+  void integrate(const ImuSample& sample, double dt_s);
   void propagate_covariance();
   /// That three components of the state from `first` on are zero but for a `sigma` that lasts
   /// `time_s`, over an interval.
@@ -80,7 +83,7 @@ class InertialFilter {
   GyroscopeNoise gyroscope_;
   RestDetector rest_;
   InertialState state_;
-  double log_evidence_ = 0;
+  double log_likelihood_ = 0;
   ImuSample last_;
   bool has_last_ = false;
   int samples_since_update_ = 0;

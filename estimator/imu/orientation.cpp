@@ -55,8 +55,9 @@ void describe(config::Fields& fields, OrientationOptions& options) {
                 {{"inertial", Method::kInertial},
                  {"complementary", Method::kComplementary},
                  {"gyroscope", Method::kGyroscope}},
-                "Filter for the orientation: an error-state Kalman filter with velocity, position "
-                "and biases (`inertial`, the most accurate), the complementary filter of the "
+                "Filter for the orientation: error-state Kalman filters with velocity, position "
+                "and biases that expect fast, usual and gentle motion (`inertial`, the most "
+                "accurate), the complementary filter of the "
                 "thesis (`complementary`, Valenti et al.), or the plain integral of the gyroscope "
                 "(`gyroscope`).");
   if (options.method == Method::kInertial)

@@ -14,60 +14,80 @@ constexpr double kRestWindow_s = 0.1;
 constexpr double kMaxForceError = 0.2;  ///< of the mean force's magnitude from gravity [m/s^2]
 constexpr double kMaxRate = 0.15;       ///< of the mean rate from the bias, once unknown [rad/s]
 constexpr double kGateSigmas = 4;
-/// Of a consumer accelerometer [m/s^2/sqrt(Hz)].
+/// Of a good accelerometer [m/s^2/sqrt(Hz)]; of a noisier one, or one that vibrates, its samples tell.
 constexpr double kForceNoiseDensity = 1e-2;
 
 }  // namespace
 
-std::optional<RestWindow> RestDetector::add(const ImuSample& sample, double dt_s,
-                                            const Eigen::Vector3d& bias, double bias_sigma) {
+std::optional<Rest> RestDetector::add(const ImuSample& sample, double dt_s,
+                                      const Eigen::Vector3d& bias, double bias_sigma) {
   SACCADE_CHECK(dt_s > 0);
-  sums_.force += dt_s * sample.specific_force;
-  sums_.rate += dt_s * sample.angular_velocity;
+  if (last_force_) difference_squares_ += (sample.specific_force - *last_force_).squaredNorm();
+  last_force_ = sample.specific_force;
+  force_sum_ += dt_s * sample.specific_force;
+  rate_sum_ += dt_s * sample.angular_velocity;
   length_s_ += dt_s;
+  ++samples_;
   // A hundred intervals of 1 ms do not sum to 0.1 s to the last bit.
   if (length_s_ < kRestWindow_s * (1 - 1e-9)) return std::nullopt;
-  const Means now{sums_.force / length_s_, sums_.rate / length_s_};
-  const double length_s = length_s_;
+  // The difference of two samples has twice the variance of one, in three components.
+  const auto n = static_cast<double>(samples_);
+  const Window now{length_s_, force_sum_ / length_s_, rate_sum_ / length_s_,
+                   difference_squares_ / (6 * n * n)};
+  start_window();
   windows_[count_++ % kWindows] = now;
-  length_s_ = 0;
-  sums_ = {};
-  const double variance = gyro_noise_density_ * gyro_noise_density_ / length_s;
+  unreturned_ = std::min(unreturned_ + 1, kWindows);
+  const double variance = gyro_noise_density_ * gyro_noise_density_ / now.length_s;
   const double gate =
       std::min(kMaxRate, kGateSigmas * std::sqrt(3 * (bias_sigma * bias_sigma + variance)));
-  const bool was_at_rest = is_at_rest_;
   is_at_rest_ = std::abs(now.force.norm() - kGravity_m_s2) < kMaxForceError &&
                 (now.rate - bias).norm() < gate && is_steady();
   if (!is_at_rest_) return std::nullopt;
-  if (was_at_rest) return RestWindow{now.rate, length_s};
-  RestWindow rest{Eigen::Vector3d::Zero(), kWindows * length_s};
-  for (const Means& window : windows_) rest.mean_rate += window.rate / kWindows;
+  Rest rest;
+  for (; unreturned_ > 0; --unreturned_) {
+    const Window& window = windows_[(count_ - unreturned_) % kWindows];
+    rest.mean_rate += window.length_s * window.rate;
+    rest.length_s += window.length_s;
+  }
+  rest.mean_rate /= rest.length_s;
   return rest;
 }
 
 bool RestDetector::is_steady() const {
   if (count_ < kWindows) return false;
-  Means mean;
-  for (const Means& window : windows_) {
+  Window mean;
+  double force_noise = 0;
+  for (const Window& window : windows_) {
     mean.force += window.force / kWindows;
     mean.rate += window.rate / kWindows;
+    force_noise += window.force_variance / kWindows;
   }
   double force_squares = 0, rate_squares = 0;
-  for (const Means& window : windows_) {
+  for (const Window& window : windows_) {
     force_squares += (window.force - mean.force).squaredNorm();
     rate_squares += (window.rate - mean.rate).squaredNorm();
   }
   // Sums of squares of so many independent components of noise, by their mean and deviation.
   constexpr double kFreedom = 3 * (kWindows - 1);
   const double most = kFreedom + kGateSigmas * std::sqrt(2 * kFreedom);
-  const auto limit = [&](double density) { return most * density * density / kRestWindow_s; };
-  return force_squares < limit(kForceNoiseDensity) && rate_squares < limit(gyro_noise_density_);
+  const auto variance = [](double density) { return density * density / kRestWindow_s; };
+  return force_squares < most * std::max(variance(kForceNoiseDensity), force_noise) &&
+         rate_squares < most * variance(gyro_noise_density_);
+}
+
+void RestDetector::start_window() {
+  length_s_ = 0;
+  samples_ = 0;
+  force_sum_.setZero();
+  rate_sum_.setZero();
+  difference_squares_ = 0;
 }
 
 void RestDetector::interrupt() {
-  length_s_ = 0;
-  sums_ = {};
+  start_window();
+  last_force_.reset();
   count_ = 0;
+  unreturned_ = 0;
   is_at_rest_ = false;
 }
 

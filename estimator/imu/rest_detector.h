@@ -16,7 +16,7 @@ constexpr double kGravity_m_s2 = 9.81;
 constexpr double kMaxImuGap_s = 0.1;
 
 /// Time in which the sensor did not move.
-struct RestWindow {
+struct Rest {
   Eigen::Vector3d mean_rate = Eigen::Vector3d::Zero();  ///< as measured [rad/s]
   double length_s = 0;
 };
@@ -34,8 +34,8 @@ class RestDetector {
   /// Adds a sample that holds for `dt_s` > 0. `bias`, `bias_sigma`: what is known of the
   /// gyroscope's bias, and the sigma of one component [rad/s]. Where this sample completes a window,
   /// and the sensor was at rest, returns that of the time at rest that was not returned before.
-  std::optional<RestWindow> add(const ImuSample& sample, double dt_s, const Eigen::Vector3d& bias,
-                                double bias_sigma);
+  std::optional<Rest> add(const ImuSample& sample, double dt_s, const Eigen::Vector3d& bias,
+                          double bias_sigma);
 
   /// Forgets what was measured, as after a gap.
   void interrupt();
@@ -43,21 +43,30 @@ class RestDetector {
   [[nodiscard]] bool is_at_rest() const { return is_at_rest_; }  ///< in the last window
 
  private:
-  /// Means over the length of a window.
-  struct Means {
-    Eigen::Vector3d force = Eigen::Vector3d::Zero();
-    Eigen::Vector3d rate = Eigen::Vector3d::Zero();
+  struct Window {
+    double length_s = 0;
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< mean
+    Eigen::Vector3d rate = Eigen::Vector3d::Zero();   ///< mean
+    double force_variance = 0;  ///< of a component of the mean, by what its samples differ
   };
   static constexpr std::size_t kWindows = 4;
 
+  void start_window();
   /// Whether the last windows differ from one another by no more than noise.
   [[nodiscard]] bool is_steady() const;
 
   double gyro_noise_density_;
-  double length_s_ = 0;  ///< of the unfinished window
-  Means sums_;           ///< of it, times its length
-  std::array<Means, kWindows> windows_;
-  std::size_t count_ = 0;  ///< finished since the last interruption
+  // Of the unfinished window.
+  double length_s_ = 0;
+  std::size_t samples_ = 0;
+  Eigen::Vector3d force_sum_ = Eigen::Vector3d::Zero();  ///< times the length
+  Eigen::Vector3d rate_sum_ = Eigen::Vector3d::Zero();   ///< likewise
+  double difference_squares_ = 0;  ///< of the force, from one sample to the next
+
+  std::optional<Eigen::Vector3d> last_force_;
+  std::array<Window, kWindows> windows_;
+  std::size_t count_ = 0;       ///< finished since the last interruption
+  std::size_t unreturned_ = 0;  ///< the newest of them
   bool is_at_rest_ = false;
 };
 

@@ -9,7 +9,6 @@
 
 #include "core/error.h"
 #include "core/io/run/path_so_far.h"
-#include "core/refused_path.h"
 #include "core/version.h"
 #include "eval/report/charts/page_data.h"
 #include "eval/report/html.h"
@@ -222,7 +221,7 @@ ViewAnswer ViewSession::answer(std::string_view target) {
   } catch (const InputError& error) {
     return {422, "text/plain; charset=utf-8", error.what()};
   } catch (const std::filesystem::filesystem_error& error) {
-    return {422, "text/plain; charset=utf-8", refused_path(error).what()};
+    return {422, "text/plain; charset=utf-8", error.what()};
   }
 }
 

@@ -27,7 +27,9 @@ void translate(std::exception_ptr pointer) {
   } catch (const InputError& error) {
     raise(error);
   } catch (const std::filesystem::filesystem_error& error) {
-    raise(refused_path(error));
+    const auto refusal = refused_path(error);
+    if (!refusal) throw;
+    raise(*refusal);
   }
 }
 

@@ -3,23 +3,11 @@
 // With a folder for pictures, what was seen is left there.
 import assert from "node:assert/strict";
 import { Chromium } from "./chromium.mjs";
+import { press, text, until } from "./page_actions.mjs";
 import { PageRecord, kCanvasColours, keepPicture, kTooWide } from "./page_record.mjs";
 
 const [program, url, pictures] = process.argv.slice(2);
 
-/// Waits until `condition` (of the page) holds.
-async function until(browser, condition, what) {
-  const held = await browser.evaluate(`new Promise((resolve) => {
-    const end = Date.now() + 20000;
-    const look = () => ((${condition}) ? resolve(true) : Date.now() > end ? resolve(false) : setTimeout(look, 20));
-    look();
-  })`);
-  assert.ok(held, what);
-}
-
-const press = (browser, key, more = "") =>
-  browser.evaluate(`document.body.dispatchEvent(new KeyboardEvent("keydown", { key: ${JSON.stringify(key)}, bubbles: true, cancelable: true, ${more} })), true`);
-const text = (browser, selector) => browser.evaluate(`document.querySelector(${JSON.stringify(selector)})?.textContent ?? null`);
 const timeOf = async (browser) => parseFloat(await text(browser, ".time"));
 const eventsDrawn = `document.querySelector(".panel[data-complete]").dataset.complete === "yes"`;
 

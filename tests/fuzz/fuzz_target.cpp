@@ -41,7 +41,9 @@ bool Feeder::accepts(std::string_view input) {
     refusal_ = error.what();
     return false;
   } catch (const std::filesystem::filesystem_error& error) {
-    refusal_ = refused_path(error).what();
+    const auto refusal = refused_path(error);
+    if (!refusal) throw;
+    refusal_ = refusal->what();
     return false;
   }
 }

@@ -16,6 +16,8 @@
 #include <string>
 #include <vector>
 
+#include "core/io/run/path_so_far.h"
+#include "core/io/trajectory_file.h"
 #include "tests/support/fake_run.h"
 #include "tests/system/saccade_command.h"
 
@@ -182,6 +184,20 @@ TEST_F(View, ServedAndExportedItIsAPageInChromium) {
   EXPECT_THAT(saccade_ok({"view", path("fast"), path("best"), "--export", path("clip.html")}),
               HasSubstr("all "));
   EXPECT_TRUE(passes("file://" + path("clip.html")));
+}
+
+TEST_F(View, ARunThatIsBeingWrittenIsFollowedInChromium) {
+  if (!on_search_path("node") || !on_search_path("chromium"))
+    GTEST_SKIP() << "needs node and chromium, which ./dev install-deps installs";
+  const fs::path hidden = path(".growing.partial-1");
+  fs::create_directories(hidden);
+  const Trajectory truth = read_trajectory(path("walls") + "/groundtruth.txt");
+  PathSoFar(hidden, path("walls")).show(truth.poses().first(3));
+  const Viewer viewer({path("growing")});
+  EXPECT_EQ(std::system(("node '" + source_path("tests/browser/live_page.mjs") + "' chromium '" +
+                         viewer.url() + "' '" + hidden.string() + "'")
+                            .c_str()),
+            0);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -10,15 +11,16 @@
 namespace saccade {
 
 /// What a run that goes on shows to whoever looks on: where its dataset is and the path that it has
-/// found so far. It is one file in the hidden folder where the run grows (AtomicFolder), replaced
-/// as a whole, and gone before the folder gets its name.
+/// found so far, in the hidden folder where the run grows (AtomicFolder). There is always a whole
+/// one, and none any more when the folder gets its name.
 class PathSoFar {
  public:
   /// Writes nothing yet. `run`: the folder that grows; `dataset`: that of the run.
   PathSoFar(const std::filesystem::path& run, const std::filesystem::path& dataset);
 
   /// Writes the path if it has not been written for kEvery_s, or never: at most kMostPoses of its
-  /// poses, evenly spaced, the last one among them. No poses: nothing is done.
+  /// poses, evenly spaced, the last one among them. No poses: nothing is done. What cannot be written
+  /// is not shown, since a run must not fail for that.
   void show(std::span<const StampedPose> path);
 
   /// Rare and short enough that a run takes as long with it: a millisecond a second.
@@ -26,8 +28,10 @@ class PathSoFar {
   static constexpr std::size_t kMostPoses = 500;
 
  private:
-  std::filesystem::path file_;
+  std::filesystem::path folder_;
   std::filesystem::path dataset_;
+  std::filesystem::path last_;  ///< file; empty before the first
+  std::size_t written_ = 0;
   std::optional<Stopwatch> since_last_;
 };
 

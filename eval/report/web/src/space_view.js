@@ -85,19 +85,32 @@ export class SpaceView {
     this.look();
   }
 
-  // Frames what is shown, from the side.
-  look() {
+  // Bounds, middle and radius of what is shown.
+  measure() {
     const { truth, paths, cloud } = this.content;
     this.bounds = limits([...truth, ...paths.flatMap((path) => path.points), ...(this.map?.checked ? cloud : [])]);
     const { low, high } = this.bounds;
-    const middle = new Vector3(...low.map((v, k) => (v + high[k]) / 2));
     this.radius = Math.hypot(...low.map((v, k) => (high[k] - v) / 2));
+    return new Vector3(...low.map((v, k) => (v + high[k]) / 2));
+  }
+
+  // Frames what is shown, from the side.
+  look() {
+    const middle = this.measure();
     this.controls.target.copy(middle);
     this.camera.position.copy(middle).add(new Vector3(-0.5, -0.72, 0.48).multiplyScalar(4 * this.radius));
     this.camera.near = 0;
     this.camera.far = 8 * this.radius;
     this.camera.zoom = 1;
     this.build();
+  }
+
+  /// Frames what is shown, from where the reader looks at it.
+  fit() {
+    const before = this.radius, from = this.camera.position.clone().sub(this.controls.target), middle = this.measure();
+    this.controls.target.copy(middle);
+    this.camera.position.copy(middle).add(from.multiplyScalar(this.radius / before));
+    this.camera.far = 8 * this.radius;
   }
 
   /// The points of a path with its deviation from the truth made larger.

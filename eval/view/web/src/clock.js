@@ -1,16 +1,16 @@
 export const kSpeeds = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5];
 
-/// The one time of the page [s], which everything is drawn at. With `newest`, the moment that a run in the making has come to, it
-/// follows that until somebody goes back, and again from when somebody goes to the end.
+/// The one time of the page [s], which everything is drawn at. While a run is being written it follows where that is, until
+/// somebody plays or goes to another moment, and again from toEnd() on.
 export class Clock {
   constructor(start, end) {
     Object.assign(this, { start, end, time: start, speed: 1, playing: false, follows: true, newest: undefined, listeners: [] });
   }
 
-  /// A run has come to `newest`.
+  /// A run that is being written has come to `newest`.
   reach(newest) {
     this.newest = newest;
-    if (this.follows && !this.playing) this.show(newest);
+    if (this.follows) this.show(newest);
   }
 
   /// Calls `listener(clock)` after every change.
@@ -23,8 +23,15 @@ export class Clock {
   }
 
   seek(time) {
-    this.follows = time >= (this.newest ?? this.end);
-    this.show(this.follows ? this.newest ?? time : time);
+    this.follows = false;
+    this.show(time);
+  }
+
+  /// To the last moment; of a run that is being written to where it is.
+  toEnd() {
+    this.follows = true;
+    this.playing = false;
+    this.show(this.newest ?? this.end);
   }
 
   show(time) {

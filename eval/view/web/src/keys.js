@@ -1,7 +1,7 @@
 const kHelp = [
   ["Space", "play or pause"],
   ["← →", "back, forward by half a window of events; with Shift by ten"],
-  ["Home End", "first, last moment; of a run that is being written where it is"],
+  ["Home End", "first, last moment; while a run is being written, End follows it"],
   [", .", "slower, faster"],
   ["[ ]", "shorter, longer window of events"],
   ["m", "next way to draw events"],
@@ -32,7 +32,7 @@ export function startKeys(dialog, help, clock, style, nextRecording) {
     ArrowLeft: (event) => step(-1, event),
     ArrowRight: (event) => step(1, event),
     Home: () => clock.seek(clock.start),
-    End: () => clock.seek(clock.end),
+    End: () => clock.toEnd(),
     ",": () => clock.shift(-1),
     ".": () => clock.shift(1),
     "[": () => style.shiftWindow(-1),

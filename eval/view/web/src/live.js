@@ -16,7 +16,7 @@ class LivePanels {
   }
 
   async show(folder, page) {
-    if (folder.path_s !== undefined && folder.path_s !== this.pathEnd && folder.recording === page.index) await this.showPath(folder, page);
+    if (folder.path_s !== this.pathEnd && page.clock && folder.recording === page.index) await this.showPath(folder, page);
     if (folder.reached_us !== undefined && folder.reached_us !== this.reached) await this.showEvents(folder);
     if (folder.frames > this.frames) await this.showFrame(folder);
   }
@@ -34,11 +34,13 @@ class LivePanels {
     this.events.figure.dataset.reached = this.reached = reached;
   }
 
-  async showPath({ name, path_s: end }, { space, clock }) {
-    const path = await askJson(`live_path?unfinished=${this.index}`);
+  async showPath({ path_s: end }, page) {
+    const path = end !== undefined && await askJson(`live_path?unfinished=${this.index}`);
     if (!path) return;
-    space.setPath(name, path);
-    clock.reach(end);
+    page.space?.setPath(this.index, path);
+    // The times of a path are rounded: its camera stands at the last of them, not behind.
+    page.ends.set(this.index, path.t.at(-1));
+    page.clock.reach(Math.max(...page.ends.values()));
     this.pathEnd = end;
   }
 
@@ -53,16 +55,17 @@ class LivePanels {
   }
 }
 
-/// What is shown as a whole changes with these.
-const kinds = (unfinished) => JSON.stringify(unfinished.map((folder) => folder.recording ?? -1));
+/// The recordings that folders belong to, which the page shows as a whole.
+const recordingsOf = (unfinished) => JSON.stringify(unfinished.map((folder) => folder.recording ?? -1));
 
 /// Follows the folders that other programs are writing, and opens the page anew when one is complete. `page`: the index of its
-/// recording, its clock and its 3-D view, where it has them.
-export function followUnfinished(box, panels, sources, page = {}) {
+/// recording and, once they are there, its clock and its 3-D view.
+export function followUnfinished(box, panels, sources, page) {
   if (!sources.unfinished.length) return;
+  page.ends = new Map();
   const live = sources.unfinished.map((_, i) => new LivePanels(panels, i));
   const show = async ({ unfinished }) => {
-    if (kinds(unfinished) !== kinds(sources.unfinished)) return location.reload();
+    if (recordingsOf(unfinished) !== recordingsOf(sources.unfinished)) return location.reload();
     box.textContent = unfinished.map(soFar).join(" ");
     for (const [i, folder] of unfinished.entries()) await live[i].show(folder, page);
     setTimeout(poll, kEveryMs);

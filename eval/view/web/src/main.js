@@ -44,20 +44,21 @@ async function start() {
   const nextRecording = startChoice(byId("choose"), sources);
   const shown = chosen(sources);
   showFacts(byId("facts"), shown);
-  const follow = (page) => !isClip && followUnfinished(byId("live"), byId("panels"), sources, page);
-  if (!shown.recording && !shown.runs.length) return follow();
+  const page = { index: shown.index };
+  if (!isClip) followUnfinished(byId("live"), byId("panels"), sources, page);
+  if (!shown.recording && !shown.runs.length) return;
   const clock = new Clock(...await span(shown));
   const style = new EventStyle(() => clock.changed());
   const player = new Player(byId("player"), clock, style, shown.recording?.events !== undefined);
   startKeys(byId("keys"), byId("help"), clock, style, nextRecording);
   showPanels(byId("panels"), shown, clock, style, failed);
-  const [space] = await Promise.all([
-    showSpace(byId("space"), shown, clock),
+  page.clock = clock;
+  await Promise.all([
+    showSpace(byId("space"), shown, clock).then((space) => (page.space = space)),
     shown.recording?.events && askJson(`rate?recording=${shown.index}`).then((rate) => rate && player.setRate(rate)),
     showErrors(byId("charts"), shown, clock),
   ].map((part) => part?.catch(failed)));
   clock.changed();
-  follow({ index: shown.index, clock, space });
 }
 
 startTheme();

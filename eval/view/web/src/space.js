@@ -27,18 +27,15 @@ export class PathSpace extends SpaceView {
     this.corners = recording && corners(recording);
   }
 
-  /// Takes the path of a run in the making, as far as it has come.
-  setPath(name, path) {
-    const at = this.traces.findIndex((trace) => trace.name === name);
+  /// Takes the path of a run that is being written, as far as it has come.
+  setPath(unfinished, path) {
+    const at = this.traces.findIndex((trace) => trace.unfinished === unfinished);
     if (at < 0) return;
     this.traces[at].path = path;
     if (!this.scene) return;
     this.content.paths[at].points = positions(path);
-    const { low, high } = this.bounds;
-    const isInside = positions(path).every((point) => point.every((v, k) => v >= low[k] && v <= high[k]));
-    // What leaves the view is brought into it; else the reader's view stays as it is.
-    if (isInside) this.build();
-    else this.look();
+    this.fit();
+    this.build();
   }
 
   draw() {

@@ -34,12 +34,12 @@ function fill(section, hasCloud) {
   return caption;
 }
 
-/// Paths, map and cameras of the recording, its runs and those in the making, whose paths come later (PathSpace::setPath).
+/// Paths, map and cameras of the recording, its runs and those that are being written, whose paths go on (PathSpace::setPath).
 export async function showSpace(section, { index, recording, runs, growing }, clock) {
   const traces = [];
   if (recording?.truth) traces.push({ name: "truth", colour: "truth", path: await askJson(`path?recording=${index}`) });
   for (const run of runs) traces.push({ name: run.name, colour: run.colour, path: await askJson(`run_path?run=${run.index}`) });
-  for (const run of growing) traces.push({ name: run.name, colour: run.colour, path: await askJson(`live_path?unfinished=${run.index}`) });
+  for (const run of growing) traces.push({ name: run.name, colour: run.colour, unfinished: run.index, path: await askJson(`live_path?unfinished=${run.index}`) });
   const clouds = await Promise.all([...runs.map((run) => askBytes(`run_cloud?run=${run.index}`)), recording && askBytes(`cloud?recording=${index}`)]);
   // A map that was tracked before the scene as it is.
   const cloud = points(clouds.find((buffer) => buffer?.byteLength));

@@ -2,10 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <vector>
+#include <cstdint>
 
+#include "core/random.h"
 #include "core/rigid3.h"
 #include "estimator/imu/inertial_filter.h"
 #include "tests/unit/estimator/imu/imu_motion.h"
@@ -24,7 +25,7 @@ using testing::tilt_error;
 /// Of a gyroscope whose bias nobody knows.
 const ImuErrors kUnknownBias{{0.05, -0.04, 0.03}, {0.03, -0.02, 0.04}, 1e-3, 1e-2};
 
-/// Turned slowly about a horizontal axis by a hand that hardly trembles.
+/// Turned slowly, so that the tilt changes, too, by a hand that hardly trembles.
 ImuMotion gentle_motion() {
   return {[](double t_s) {
             return so3_exp({1.2, 0.1, -0.4}) * so3_exp({0, 0, 0.6 * t_s});
@@ -39,7 +40,7 @@ ImuMotion gentle_motion() {
 ImuMotion gentle_then_swept() {
   const ImuMotion gentle = gentle_motion();
   return {gentle.orientation, [gentle](double t_s) -> Eigen::Vector3d {
-            const double sweep = t_s < 10 ? 0 : 3 * std::sin(M_PI * (t_s - 10));
+            const double sweep = t_s < 10 ? 0 : 3 * std::cos(M_PI * (t_s - 10));
             return gentle.acceleration(t_s) + Eigen::Vector3d(sweep, 0, 0);
           }};
 }
@@ -77,25 +78,49 @@ TEST(InertialBank, ItsFastestFilterHoldsInAHand) {
 TEST(InertialBank, FollowsAMotionThatChanges) {
   InertialBank filter({});
   for (int i = 0; i < 10000; ++i) filter.update(reading(gentle_then_swept(), i, 2, kUnknownBias));
-  EXPECT_LT(filter.probabilities()[0], 0.1);
-  // A second of the new motion is enough to tell.
-  for (int i = 10000; i < 11000; ++i)
+  EXPECT_GT(filter.probabilities()[2], 0.5);
+  // Less than a second of the new motion is enough to tell.
+  for (int i = 10000; i < 10700; ++i)
     filter.update(reading(gentle_then_swept(), i, 2, kUnknownBias));
-  EXPECT_GT(filter.probabilities()[0], 0.9);
+  EXPECT_LT(filter.probabilities()[2], 0.1);
   EXPECT_LT(tilt_rms(InertialBank({}), gentle_then_swept(), kUnknownBias, 11000, 20000),
             2 * kDegree);
 }
 
-TEST(InertialBank, ProbabilitiesSumToOne) {
-  InertialBank filter({});
-  for (int i = 0; i <= 3000; ++i) {
-    filter.update(reading(hand_motion(), i, 1, {}));
-    const auto& all = filter.probabilities();
-    ASSERT_NEAR(std::accumulate(all.begin(), all.end(), 0.0), 1, 1e-12);
-    for (const double probability : all) ASSERT_GT(probability, 0);
+TEST(InertialBank, ItsErrorsAreAsLargeAsItSays) {
+  // One component of the tilt and the biases, over runs that differ in motion, noise and biases.
+  constexpr int kRuns = 40;
+  double tilt = 0, bias = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    const auto seed = static_cast<std::uint64_t>(run + 1);
+    const Random random(seed);
+    ImuErrors errors{{}, {}, 1e-3, 1e-2};
+    for (int k = 0; k < 3; ++k) {
+      const auto axis = static_cast<std::uint64_t>(k);
+      errors.rate_bias[k] = 0.05 * random.normal(100, axis);
+      errors.force_bias[k] = 0.05 * random.normal(101, axis);
+    }
+    const ImuMotion motion = run % 2 == 0 ? hand_motion() : gentle_motion();
+    InertialBank filter({});
+    for (int i = 0; i <= 6000; ++i) filter.update(reading(motion, i, seed, errors));
+    tilt += std::pow(tilt_error(motion, filter.world_from_imu(), 6) / filter.tilt_sigma(), 2) / 2;
+    bias += (filter.bias() - errors.rate_bias).squaredNorm() /
+            (3 * filter.bias_sigma() * filter.bias_sigma());
   }
-  EXPECT_GT(filter.bias_sigma(), 0);
-  EXPECT_GT(filter.tilt_sigma(), 0);
+  // Expected 1; both motions are smoother than the filters believe.
+  EXPECT_LT(tilt / kRuns, 2);
+  EXPECT_GT(tilt / kRuns, 0.05);
+  EXPECT_LT(bias / kRuns, 2);
+  EXPECT_GT(bias / kRuns, 0.05);
+}
+
+TEST(InertialBank, AfterALongGapAllFiltersAreAsLikely) {
+  InertialBank filter({});
+  for (int i = 0; i <= 3000; ++i) filter.update(reading(hand_motion(), i, 1, {}));
+  const auto& before = filter.probabilities();
+  ASSERT_GT(*std::max_element(before.begin(), before.end()), 0.6);
+  filter.update(reading(hand_motion(), 100'000, 1, {}));
+  for (const double probability : filter.probabilities()) EXPECT_NEAR(probability, 1.0 / 3, 0.01);
 }
 
 TEST(InertialBank, AGapIsSurvived) {

@@ -66,6 +66,30 @@ TEST(RestDetector, ATiltAtAConstantRateIsNoRest) {
   EXPECT_EQ(find(motion, 3000, unbiased).rest_s, 0);
 }
 
+TEST(RestDetector, ANoisyAccelerometerRestsToo) {
+  const ImuErrors noisy{{0.05, -0.04, 0.03}, {0.03, -0.02, 0.04}, kDensity, 5e-2};
+  EXPECT_GT(find(turning({0, 0, 1}, [](double) { return 0.0; }), 3000, noisy).rest_s, 2);
+}
+
+TEST(RestDetector, NoTimeIsReturnedTwice) {
+  // The force's error is at the limit of what passes for gravity, so that every other window fails.
+  RestDetector detector(kDensity);
+  double rest_s = 0;
+  int windows = 0;
+  for (int i = 0; i < 3000; ++i) {
+    ImuSample sample;
+    sample.t_ns = static_cast<TimeNs>(i) * 1'000'000;
+    sample.specific_force = {0, 0, kGravity_m_s2 + (i / 100 % 2 == 0 ? 0.195 : 0.205)};
+    sample.angular_velocity = {0.05, 0, 0};
+    const auto rest = detector.add(sample, kReading_s, {0, 0, 0}, 0.1);
+    if (!rest) continue;
+    rest_s += rest->length_s;
+    ++windows;
+  }
+  EXPECT_GT(windows, 10);
+  EXPECT_LE(rest_s, 3 + 1e-9);
+}
+
 TEST(RestDetector, ForgetsWhatWasBeforeAnInterruption) {
   RestDetector detector(kDensity);
   const ImuMotion still = turning({0, 0, 1}, [](double) { return 0.0; });

@@ -58,11 +58,26 @@ TEST(PathSoFar, IsNotWrittenAgainAtOnce) {
   EXPECT_EQ(read_path_so_far(folder.path())->path.size(), 2U);
 }
 
+TEST(PathSoFar, TheNewestIsReadAndTheOneBeforeIsGone) {
+  const TemporaryFolder folder;
+  folder.write("path_so_far.00000006.txt", "# /data\n0 0 0 0 0 0 0 1\n");
+  folder.write("path_so_far.00000007.txt", "# /data\n0 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n");
+  EXPECT_EQ(read_path_so_far(folder.path())->path.size(), 2U);
+  remove_path_so_far(folder.path());
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST(PathSoFar, WhatCannotBeWrittenIsNotShown) {
+  const TemporaryFolder folder;
+  PathSoFar(folder.path() / "gone", "/data").show(straight(2));
+  EXPECT_FALSE(read_path_so_far(folder.path() / "gone"));
+}
+
 TEST(PathSoFar, WhatIsMalformedIsAnError) {
   const TemporaryFolder folder;
-  folder.write("path_so_far.txt", "# /data\n0 1 2\n");
+  folder.write("path_so_far.00000000.txt", "# /data\n0 1 2\n");
   EXPECT_THROW(static_cast<void>(read_path_so_far(folder.path())), InputError);
-  folder.write("path_so_far.txt", "0 0 0 0 0 0 0 1\n");
+  folder.write("path_so_far.00000000.txt", "0 0 0 0 0 0 0 1\n");
   EXPECT_FALSE(read_path_so_far(folder.path())) << "it names no dataset";
 }
 
