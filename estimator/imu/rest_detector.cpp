@@ -11,8 +11,9 @@ namespace {
 // Over 0.1 s the noise of a consumer sensor averages to 0.03 m/s^2 and 0.003 rad/s: the thresholds
 // are several sigma of it, and far below what a hand does.
 constexpr double kRestWindow_s = 0.1;
-constexpr double kMaxForceError = 0.2;  ///< of the mean force's magnitude from gravity [m/s^2]
-constexpr double kMaxRate = 0.15;       ///< of the mean rate from the bias, once unknown [rad/s]
+/// Of the mean force's magnitude from gravity [m/s^2]: two real cameras at rest read 10.1 and 10.6.
+constexpr double kMaxForceError = 0.9;
+constexpr double kMaxRate = 0.15;  ///< of the mean rate from the bias, once unknown [rad/s]
 constexpr double kGateSigmas = 4;
 /// Of a good accelerometer [m/s^2/sqrt(Hz)]; of a noisier one, or one that vibrates, its samples tell.
 constexpr double kForceNoiseDensity = 1e-2;

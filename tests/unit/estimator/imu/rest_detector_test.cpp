@@ -71,6 +71,11 @@ TEST(RestDetector, ANoisyAccelerometerRestsToo) {
   EXPECT_GT(find(turning({0, 0, 1}, [](double) { return 0.0; }), 3000, noisy).rest_s, 2);
 }
 
+TEST(RestDetector, AnAccelerometerWhoseScaleIsOffRestsToo) {
+  const ImuErrors off{{0.05, -0.04, 0.03}, {0, 0, 0.77}, kDensity, 1e-2};  // 10.6 m/s^2 at rest
+  EXPECT_NEAR(find(turning({0, 0, 1}, [](double) { return 0.0; }), 2000, off).rest_s, 2, 1e-9);
+}
+
 TEST(RestDetector, NoTimeIsReturnedTwice) {
   // The force's error is at the limit of what passes for gravity, so that every other window fails.
   RestDetector detector(kDensity);
@@ -79,7 +84,7 @@ TEST(RestDetector, NoTimeIsReturnedTwice) {
   for (int i = 0; i < 3000; ++i) {
     ImuSample sample;
     sample.t_ns = static_cast<TimeNs>(i) * 1'000'000;
-    sample.specific_force = {0, 0, kGravity_m_s2 + (i / 100 % 2 == 0 ? 0.195 : 0.205)};
+    sample.specific_force = {0, 0, kGravity_m_s2 + (i / 100 % 2 == 0 ? 0.895 : 0.905)};
     sample.angular_velocity = {0.05, 0, 0};
     const auto rest = detector.add(sample, kReading_s, {0, 0, 0}, 0.1);
     if (!rest) continue;
