@@ -31,11 +31,11 @@ class GyroBiasEstimator {
   /// Adds a sample that holds for `dt_s` > 0.
   void add(const ImuSample& sample, double dt_s) {
     variance_ += noise_.random_walk * noise_.random_walk * dt_s;
-    const auto window = rest_.add(sample, dt_s, bias_, sigma());
-    if (!window) return;
-    const double mean_variance = noise_.density * noise_.density / window->length_s;
+    const auto rest = rest_.add(sample, dt_s, bias_, sigma());
+    if (!rest) return;
+    const double mean_variance = rest->rate_sigma * rest->rate_sigma;
     const double gain = variance_ / (variance_ + mean_variance);
-    bias_ += gain * (window->mean_rate - bias_);  // (3.17)
+    bias_ += gain * (rest->mean_rate - bias_);  // (3.17)
     variance_ = (1 - gain) * (1 - gain) * variance_ + gain * gain * mean_variance;
   }
 

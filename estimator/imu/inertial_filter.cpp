@@ -55,18 +55,17 @@ void InertialFilter::update(const ImuSample& sample) {
     return;
   }
   integrate(sample, dt_s);
-  const auto window = rest_.add(sample, dt_s, state_.bias, bias_sigma());
-  if (window || ++samples_since_update_ >= kSamplesPerUpdate) {
+  const auto rest = rest_.add(sample, dt_s, state_.bias, bias_sigma());
+  if (rest || ++samples_since_update_ >= kSamplesPerUpdate) {
     const double interval_s = interval_s_;
     propagate_covariance();
     bound(kVelocity, options_.velocity_sigma, kVelocityTime_s, interval_s);
     if (const auto& reach = options_.position_sigma_m)
       bound(kPosition, *reach, kPositionTime_s, interval_s);
   }
-  if (window) {
-    measure(kVelocity, -state_.velocity, kRestSpeedSigma * kRestSpeedSigma);
-    const double density = gyroscope_.density;
-    measure(kBias, window->mean_rate - state_.bias, density * density / window->length_s);
+  if (rest) {
+    if (rest->is_complete) measure(kVelocity, -state_.velocity, kRestSpeedSigma * kRestSpeedSigma);
+    measure(kBias, rest->mean_rate - state_.bias, rest->rate_sigma * rest->rate_sigma);
   }
   last_ = sample;
 }

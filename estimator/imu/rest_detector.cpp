@@ -15,6 +15,9 @@ constexpr double kRestWindow_s = 0.1;
 constexpr double kMaxForceError = 0.9;
 constexpr double kMaxRate = 0.15;  ///< of the mean rate from the bias, once unknown [rad/s]
 constexpr double kGateSigmas = 4;
+/// Nearly at rest the rate changes by this from one window to the next, and is as far from the bias
+/// [rad/s]; it is worth saying where less is known of the bias than this.
+constexpr double kNearRest = 0.03, kUnknownBias = 0.05;
 /// Of a good accelerometer [m/s^2/sqrt(Hz)]; of a noisier one, or one that vibrates, its samples tell.
 constexpr double kForceNoiseDensity = 1e-2;
 
@@ -43,7 +46,8 @@ std::optional<Rest> RestDetector::add(const ImuSample& sample, double dt_s,
       std::min(kMaxRate, kGateSigmas * std::sqrt(3 * (bias_sigma * bias_sigma + variance)));
   is_at_rest_ = std::abs(now.force.norm() - kGravity_m_s2) < kMaxForceError &&
                 (now.rate - bias).norm() < gate && is_steady();
-  if (!is_at_rest_) return std::nullopt;
+  if (!is_at_rest_) return near_rest(bias_sigma);
+  has_begun_ = true;
   Rest rest;
   for (; unreturned_ > 0; --unreturned_) {
     const Window& window = windows_[(count_ - unreturned_) % kWindows];
@@ -51,7 +55,21 @@ std::optional<Rest> RestDetector::add(const ImuSample& sample, double dt_s,
     rest.length_s += window.length_s;
   }
   rest.mean_rate /= rest.length_s;
+  rest.rate_sigma = gyro_noise_density_ / std::sqrt(rest.length_s);
   return rest;
+}
+
+std::optional<Rest> RestDetector::near_rest(double bias_sigma) {
+  if (has_begun_ || count_ < 2 || bias_sigma < kUnknownBias) return std::nullopt;
+  const Window& now = windows_[(count_ - 1) % kWindows];
+  const Window& before = windows_[(count_ - 2) % kWindows];
+  for (const Window* window : {&before, &now})
+    if (std::abs(window->force.norm() - kGravity_m_s2) > kMaxForceError ||
+        window->rate.norm() > kMaxRate)
+      return std::nullopt;
+  if ((now.rate - before.rate).norm() > kNearRest) return std::nullopt;
+  has_begun_ = true;
+  return Rest{0.5 * (now.rate + before.rate), now.length_s + before.length_s, kNearRest, false};
 }
 
 bool RestDetector::is_steady() const {

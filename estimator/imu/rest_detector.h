@@ -19,13 +19,17 @@ constexpr double kMaxImuGap_s = 0.1;
 struct Rest {
   Eigen::Vector3d mean_rate = Eigen::Vector3d::Zero();  ///< as measured [rad/s]
   double length_s = 0;
+  double rate_sigma = 0;    ///< of a component of the mean rate as the bias [rad/s]
+  bool is_complete = true;  ///< false: as good as at rest, but for slow movements
 };
 
 /// Finds when the sensor was at rest (steady state of thesis 3.1.3), by windows of 0.1 s: the mean
 /// specific force has the magnitude of gravity, the mean rate is a possible bias (below 0.15 rad/s
 /// and within four sigma), and over four windows in a row neither changes by more than noise does:
 /// a turn that slows down, or that tilts the sensor, is none. A slow rotation about the vertical at
-/// a constant rate cannot be told from rest.
+/// a constant rate cannot be told from rest. While nothing is known of the bias, the first two
+/// windows of a slow and nearly constant rate tell it roughly: recordings begin at rest more often
+/// than in a turn.
 class RestDetector {
  public:
   /// `gyro_noise_density` [rad/s/sqrt(Hz)].
@@ -52,6 +56,8 @@ class RestDetector {
   static constexpr std::size_t kWindows = 4;
 
   void start_window();
+  /// What the last two windows say of a bias that nothing is known of.
+  [[nodiscard]] std::optional<Rest> near_rest(double bias_sigma);
   /// Whether the last windows differ from one another by no more than noise.
   [[nodiscard]] bool is_steady() const;
 
@@ -68,6 +74,7 @@ class RestDetector {
   std::size_t count_ = 0;       ///< finished since the last interruption
   std::size_t unreturned_ = 0;  ///< the newest of them
   bool is_at_rest_ = false;
+  bool has_begun_ = false;  ///< a rest was found, or what is near one
 };
 
 }  // namespace saccade

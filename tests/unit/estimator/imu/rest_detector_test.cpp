@@ -34,7 +34,7 @@ Found find(const ImuMotion& motion, int readings, const ImuErrors& errors = kErr
   Found found;
   for (int i = 0; i < readings; ++i) {
     const auto rest = detector.add(reading(motion, i, 5, errors), kReading_s, {0, 0, 0}, 0.1);
-    if (!rest) continue;
+    if (!rest || !rest->is_complete) continue;
     if (found.first < 0) found.first = i;
     found.rest_s += rest->length_s;
     found.rate_sum += rest->length_s * rest->mean_rate;
@@ -87,7 +87,7 @@ TEST(RestDetector, NoTimeIsReturnedTwice) {
     sample.specific_force = {0, 0, kGravity_m_s2 + (i / 100 % 2 == 0 ? 0.895 : 0.905)};
     sample.angular_velocity = {0.05, 0, 0};
     const auto rest = detector.add(sample, kReading_s, {0, 0, 0}, 0.1);
-    if (!rest) continue;
+    if (!rest || !rest->is_complete) continue;
     rest_s += rest->length_s;
     ++windows;
   }
@@ -95,11 +95,33 @@ TEST(RestDetector, NoTimeIsReturnedTwice) {
   EXPECT_LE(rest_s, 3 + 1e-9);
 }
 
+TEST(RestDetector, NearlyAtRestItTellsARoughBiasOnce) {
+  // Two slow movements a second, which are no rest.
+  const ImuMotion motion =
+      turning({0, 0, 1}, [](double t_s) { return 0.002 * std::sin(12 * t_s); });
+  RestDetector detector(kDensity);
+  int count = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const auto rest = detector.add(reading(motion, i, 5, kErrors), kReading_s, {0, 0, 0}, 0.1);
+    if (!rest) continue;
+    ++count;
+    EXPECT_EQ(i, 199);
+    EXPECT_FALSE(rest->is_complete);
+    EXPECT_FALSE(detector.is_at_rest());
+    EXPECT_LT((rest->mean_rate - kErrors.rate_bias).norm(), 2 * rest->rate_sigma);
+  }
+  EXPECT_EQ(count, 1);
+  // Not where the bias is known better.
+  RestDetector known(kDensity);
+  for (int i = 0; i < 2000; ++i)
+    EXPECT_FALSE(known.add(reading(motion, i, 5, kErrors), kReading_s, kErrors.rate_bias, 0.01));
+}
+
 TEST(RestDetector, ForgetsWhatWasBeforeAnInterruption) {
   RestDetector detector(kDensity);
   const ImuMotion still = turning({0, 0, 1}, [](double) { return 0.0; });
   const auto add = [&](int i) {
-    return detector.add(reading(still, i, 5, kErrors), kReading_s, {0, 0, 0}, 0.1);
+    return detector.add(reading(still, i, 5, kErrors), kReading_s, kErrors.rate_bias, 0.04);
   };
   for (int i = 0; i < 350; ++i) EXPECT_FALSE(add(i));
   detector.interrupt();
