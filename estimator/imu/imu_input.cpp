@@ -45,13 +45,19 @@ MountedImu load_mounted_imu(const Dataset& dataset, const std::string& consumer)
 ImuPoses camera_orientations(const ImuInput& imu, const OrientationOptions& options) {
   const Eigen::Quaterniond imu_from_camera(Eigen::Matrix3d(imu.camera_from_imu.transpose()));
   ImuPoses result;
-  std::vector<StampedPose> poses;
+  std::vector<StampedPose> poses, continuous;
   poses.reserve(imu.samples.size());
+  continuous.reserve(imu.samples.size());
   for (const ImuOrientation& one : estimate_orientations(imu.samples, options)) {
     result.gyro.push_back(one.gyro);
-    poses.push_back({seconds_from_ns(one.gyro.t_ns),
-                     {one.world_from_imu * imu_from_camera, Eigen::Vector3d::Zero()}});
+    const double t_s = seconds_from_ns(one.gyro.t_ns);
+    const auto add = [&](const Eigen::Quaterniond& orientation, std::vector<StampedPose>& to) {
+      to.push_back({t_s, {orientation * imu_from_camera, Eigen::Vector3d::Zero()}});
+    };
+    add(one.world_from_imu, poses);
+    add(one.continuous, continuous);
   }
+  result.continuous = Trajectory(std::move(continuous));
   result.world_from_camera = Trajectory(std::move(poses));
   return result;
 }

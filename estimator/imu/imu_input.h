@@ -38,6 +38,7 @@ struct MountedImu {
 /// Orientations of the camera, one per sample.
 struct ImuPoses {
   Trajectory world_from_camera;        ///< at the origin
+  Trajectory continuous;               ///< the same without jumps, for what is moved by it
   std::vector<GyroBiasEstimate> gyro;  ///< as many
 };
 

@@ -26,6 +26,9 @@ class InertialBank {
   void update(const ImuSample& sample);
 
   [[nodiscard]] const Eigen::Quaterniond& world_from_imu() const { return world_from_imu_; }
+  /// The same without its jumps, for what is moved by it: it turns with the gyroscope and follows
+  /// within a second.
+  [[nodiscard]] const Eigen::Quaterniond& continuous() const { return continuous_; }
   [[nodiscard]] const Eigen::Vector3d& bias() const { return bias_; }  ///< [rad/s]
   [[nodiscard]] double bias_sigma() const;  ///< of one component, RMS [rad/s]
   [[nodiscard]] double tilt_sigma() const;  ///< of one component, RMS [rad]
@@ -47,6 +50,8 @@ class InertialBank {
   [[nodiscard]] double variance(int first, int size) const;
   /// Updates the probabilities by the likelihoods.
   void weigh();
+  /// Turns continuous() with the gyroscope, and a little towards the mean of the filters.
+  void follow(const ImuSample& sample, double dt_s);
   /// Has each filter go on from a mean over all, by how often motion changes its character.
   void mix(double interval_s);
 
@@ -54,9 +59,10 @@ class InertialBank {
   Probabilities probabilities_;
   std::size_t likeliest_ = 0;
   double unmixed_s_ = 0;  ///< since the filters were mixed last
-  TimeNs last_ns_ = 0;
+  ImuSample last_;
   bool has_last_ = false;
   Eigen::Quaterniond world_from_imu_ = Eigen::Quaterniond::Identity();
+  Eigen::Quaterniond continuous_ = Eigen::Quaterniond::Identity();
   Eigen::Vector3d bias_ = Eigen::Vector3d::Zero();
 };
 

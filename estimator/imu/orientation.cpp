@@ -28,7 +28,9 @@ std::vector<ImuOrientation> run(Filter filter, std::span<const ImuSample> sample
     filter.update(sample);
     GyroBiasEstimate estimate = bias_of(filter);
     estimate.t_ns = sample.t_ns;
-    orientations.push_back({filter.world_from_imu(), estimate});
+    Eigen::Quaterniond continuous = filter.world_from_imu();
+    if constexpr (requires { filter.continuous(); }) continuous = filter.continuous();
+    orientations.push_back({filter.world_from_imu(), continuous, estimate});
   }
   return orientations;
 }

@@ -31,6 +31,7 @@ void describe(config::Fields& fields, OrientationOptions& options);
 /// Estimate after one sample.
 struct ImuOrientation {
   Eigen::Quaterniond world_from_imu;  ///< the world's z axis points up
+  Eigen::Quaterniond continuous;      ///< the same without jumps, where the filter's has any
   GyroBiasEstimate gyro;
 };
 

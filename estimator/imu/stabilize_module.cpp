@@ -82,9 +82,9 @@ struct Orientations {
 Orientations find_orientations(const std::optional<ImuInput>& imu, const Trajectory& given_poses,
                                const StabilizeConfig& config) {
   Orientations found;
-  found.camera = imu ? camera_orientations(*imu, config.orientation) : ImuPoses{given_poses, {}};
-  found.world_from_smoothed =
-      smoothed_orientations(found.camera.world_from_camera, config.smoothing);
+  found.camera =
+      imu ? camera_orientations(*imu, config.orientation) : ImuPoses{given_poses, given_poses, {}};
+  found.world_from_smoothed = smoothed_orientations(found.camera.continuous, config.smoothing);
   return found;
 }
 
@@ -103,7 +103,7 @@ Stabilization stabilize_events(EventQueue& events, const Orientations& orientati
                                const StabilizeConfig& config, const PinholeCamera& camera,
                                const std::filesystem::path* folder, Progress& progress) {
   Stabilization done;
-  const Stabilizer stabilizer(camera, orientations.camera.world_from_camera);
+  const Stabilizer stabilizer(camera, orientations.camera.continuous);
   WindowCutter cutter(config.window_s);
   std::optional<StabilizedEventsWriter> writer;
   std::size_t wanted = kBatchEvents;
@@ -116,9 +116,8 @@ Stabilization stabilize_events(EventQueue& events, const Orientations& orientati
     std::vector<StabilizedWindow> windows(parts.size());
     std::vector<std::vector<StabilizedEvent>> stabilized(parts.size());
     parallel_for(parts.size(), [&](std::size_t i) {
-      windows[i] =
-          window_at(cutter.begin_of(parts[i].front()), cutter.length_ns(),
-                    orientations.camera.world_from_camera, orientations.world_from_smoothed);
+      windows[i] = window_at(cutter.begin_of(parts[i].front()), cutter.length_ns(),
+                             orientations.camera.continuous, orientations.world_from_smoothed);
       const Rigid3 steady = orientations.world_from_smoothed.at_clamped(windows[i].at_s);
       stabilized[i] = stabilizer.stabilize(parts[i], steady.rotation());
     });
@@ -145,7 +144,7 @@ void write(const std::filesystem::path& folder, const Dataset& dataset, const Or
   write_orientations(folder / "orientation.txt", found.camera.world_from_camera.poses());
   if (!found.camera.gyro.empty()) write_gyro_biases(folder / "gyro_bias.txt", found.camera.gyro);
   write_stabilized_frames(folder / "stabilized", dataset, window,
-                          Stabilizer(dataset.camera(), found.camera.world_from_camera),
+                          Stabilizer(dataset.camera(), found.camera.continuous),
                           found.world_from_smoothed);
 }
 

@@ -83,11 +83,11 @@ MosaicRun run_once(const MosaicSource& source, const Dataset& dataset,
   MosaicRun run;
   {
     const ScopedTimer whole(wall_s);
-    Trajectory& poses = run.camera.world_from_camera;
+    Trajectory& poses = run.camera.continuous;
     {
       const ScopedTimer clock(orientation_s);
       run.camera = source.imu ? camera_orientations(*source.imu, config.orientation)
-                              : ImuPoses{source.poses, {}};
+                              : ImuPoses{source.poses, source.poses, {}};
     }
     run.events = within(source.events, poses);
     if (run.events.empty())
@@ -121,7 +121,7 @@ void write(const std::filesystem::path& folder, const MosaicRun& run,
   write_log_image(folder / "mosaic.exr", run.mosaic.log_image, run.mosaic.observed);
   write_png(folder / "mosaic.png", marked_picture(run.mosaic));
   write_panorama(folder / "mosaic.yaml", run.panorama);
-  write_orientations(folder / "orientation.txt", run.camera.world_from_camera.poses());
+  write_orientations(folder / "orientation.txt", run.camera.continuous.poses());
   if (!run.camera.gyro.empty()) write_gyro_biases(folder / "gyro_bias.txt", run.camera.gyro);
   write_snapshots(folder, snapshots);
 }
@@ -160,7 +160,7 @@ RunSummary run_mosaic(const RunRequest& request) {
   timing.sequence_s = seconds_from_ns(events.back().t_ns - events.front().t_ns);
   const auto snapshots =
       take_snapshots(events, config.snapshot_events, [&](std::span<const Event> first) {
-        return make_mosaic({dataset.camera(), first, run.camera.world_from_camera, thresholds},
+        return make_mosaic({dataset.camera(), first, run.camera.continuous, thresholds},
                            run.panorama, config.mosaic)
             .log_image;
       });
