@@ -31,7 +31,7 @@ std::string below(const std::string& group, const char* name) {
 EventH5Layout::EventH5Layout(const std::filesystem::path& path)
     : name(event_file_place(path).file.string()) {
   const H5Lock lock;
-  open(name);
+  file = open_h5_file(name);
   open_columns(find_events(event_file_place(path).member));
   read_sensor();
   if (place != "/events" && place != "/") return;
@@ -46,16 +46,6 @@ void EventH5Layout::fail(const std::string& path, const std::string& problem) co
 void EventH5Layout::fail_at(const std::string& path, std::uint64_t index,
                             const std::string& problem) const {
   fail(path + "[" + std::to_string(index) + "]", problem);
-}
-
-void EventH5Layout::open(const std::filesystem::path& file_name) {
-  if (!std::filesystem::exists(file_name)) throw InputError(name, "no such file");
-  const H5Handle access = {H5Pcreate(H5P_FILE_ACCESS), H5Pclose};
-  H5Pset_file_locking(access, false, true);  // read-only media and parallel readers
-  file = {H5Fopen(file_name.c_str(), H5F_ACC_RDONLY, access), H5Fclose};
-  if (!file.valid())
-    throw InputError(name,
-                     "is no HDF5 file, or is truncated or damaged (HDF5: " + h5_reason() + ")");
 }
 
 /// The path of a group of columns or of a dataset.

@@ -58,7 +58,6 @@ class EventH5Layout {
   std::optional<std::vector<std::uint64_t>> ms_to_idx;  ///< first event of every millisecond
 
  private:
-  void open(const std::filesystem::path& file_name);
   [[nodiscard]] std::string find_events(const std::string& member) const;
   void open_columns(const std::string& events);
   void open_table(const std::string& path);

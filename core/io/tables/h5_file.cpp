@@ -11,16 +11,20 @@
 
 namespace saccade {
 
-H5File::H5File(const std::filesystem::path& file) : name_(file.string()) {
-  if (!std::filesystem::exists(file)) throw InputError(name_, "no such file");
+H5Handle open_h5_file(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) throw InputError(file.string(), "no such file");
   const H5Lock lock;
   const H5Handle access = {H5Pcreate(H5P_FILE_ACCESS), H5Pclose};
   H5Pset_file_locking(access, false, true);  // read-only media and parallel readers
-  file_ = {H5Fopen(file.c_str(), H5F_ACC_RDONLY, access), H5Fclose};
-  if (!file_.valid())
-    throw InputError(name_,
+  H5Handle opened = {H5Fopen(file.c_str(), H5F_ACC_RDONLY, access), H5Fclose};
+  if (!opened.valid())
+    throw InputError(file.string(),
                      "is no HDF5 file, or is truncated or damaged (HDF5: " + h5_reason() + ")");
+  return opened;
 }
+
+H5File::H5File(const std::filesystem::path& file)
+    : name_(file.string()), file_(open_h5_file(file)) {}
 
 void H5File::fail(const std::string& path, const std::string& problem) const {
   throw InputError(location(path), problem);

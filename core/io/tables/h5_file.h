@@ -11,6 +11,9 @@
 
 namespace saccade {
 
+/// Opens a file to be read. InputError where there is none, or no HDF5 file.
+[[nodiscard]] H5Handle open_h5_file(const std::filesystem::path& file);
+
 /// An HDF5 file whose arrays are read whole or by their first index. InputError with "FILE:/path" for
 /// what is missing, of another kind or cannot be read.
 class H5File {

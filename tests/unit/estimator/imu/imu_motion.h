@@ -29,6 +29,18 @@ struct ImuErrors {
   double force_noise = 1e-2;  ///< [m/s^2/sqrt(Hz)]
 };
 
+/// `errors` with biases that are drawn by the seed, of these sigmas per component.
+inline ImuErrors with_biases(ImuErrors errors, std::uint64_t seed, double rate_sigma,
+                             double force_sigma) {
+  const Random random(seed);
+  for (int k = 0; k < 3; ++k) {
+    const auto axis = static_cast<std::uint64_t>(k);
+    errors.rate_bias[k] = rate_sigma * random.normal(100, axis);
+    errors.force_bias[k] = force_sigma * random.normal(101, axis);
+  }
+  return errors;
+}
+
 constexpr double kReading_s = 1e-3;  ///< from one reading to the next
 
 /// The i-th reading; its noise depends on the seed alone.

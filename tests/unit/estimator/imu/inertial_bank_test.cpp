@@ -21,6 +21,7 @@ using testing::kDegree;
 using testing::kReading_s;
 using testing::reading;
 using testing::tilt_error;
+using testing::with_biases;
 
 /// Of a gyroscope whose bias nobody knows.
 const ImuErrors kUnknownBias{{0.05, -0.04, 0.03}, {0.03, -0.02, 0.04}, 1e-3, 1e-2};
@@ -93,13 +94,7 @@ TEST(InertialBank, ItsErrorsAreAsLargeAsItSays) {
   double tilt = 0, bias = 0;
   for (int run = 0; run < kRuns; ++run) {
     const auto seed = static_cast<std::uint64_t>(run + 1);
-    const Random random(seed);
-    ImuErrors errors{{}, {}, 1e-3, 1e-2};
-    for (int k = 0; k < 3; ++k) {
-      const auto axis = static_cast<std::uint64_t>(k);
-      errors.rate_bias[k] = 0.05 * random.normal(100, axis);
-      errors.force_bias[k] = 0.05 * random.normal(101, axis);
-    }
+    const ImuErrors errors = with_biases({{}, {}, 1e-3, 1e-2}, seed, 0.05, 0.05);
     const ImuMotion motion = run % 2 == 0 ? hand_motion() : gentle_motion();
     InertialBank filter({});
     for (int i = 0; i <= 6000; ++i) filter.update(reading(motion, i, seed, errors));
@@ -112,6 +107,32 @@ TEST(InertialBank, ItsErrorsAreAsLargeAsItSays) {
   EXPECT_GT(tilt / kRuns, 0.05);
   EXPECT_LT(bias / kRuns, 2);
   EXPECT_GT(bias / kRuns, 0.05);
+}
+
+TEST(InertialBank, WhatIsContinuousFollowsWithoutTheJumpsOfTheMean) {
+  InertialBank filter({});
+  const auto angle = [](const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
+    return so3_log(a.conjugate() * b).norm();
+  };
+  double jump = 0, continuous_jump = 0, apart = 0;
+  Eigen::Quaterniond mean, continuous;
+  ImuSample before;
+  for (int i = 0; i < 15000; ++i) {
+    const ImuSample sample = reading(gentle_then_swept(), i, 2, kUnknownBias);
+    filter.update(sample);
+    if (i > 0) {
+      const Eigen::Quaterniond turn = so3_exp(
+          kReading_s * (0.5 * (before.angular_velocity + sample.angular_velocity) - filter.bias()));
+      jump = std::max(jump, angle(mean * turn, filter.world_from_imu()));
+      continuous_jump = std::max(continuous_jump, angle(continuous * turn, filter.continuous()));
+    }
+    if (i > 3000) apart = std::max(apart, angle(filter.continuous(), filter.world_from_imu()));
+    before = sample;
+    mean = filter.world_from_imu();
+    continuous = filter.continuous();
+  }
+  EXPECT_LT(continuous_jump, 0.1 * jump);
+  EXPECT_LT(apart, 5 * kDegree);
 }
 
 TEST(InertialBank, AfterALongGapAllFiltersAreAsLikely) {

@@ -19,6 +19,7 @@ using testing::kReading_s;
 using testing::kUp;
 using testing::reading;
 using testing::tilt_error;
+using testing::with_biases;
 
 InertialFilter slow_filter() {
   return InertialFilter({.velocity_sigma = 0.5},
@@ -56,13 +57,7 @@ TEST(InertialFilter, ItsErrorsAreAsLargeAsItSays) {
   double tilt = 0, bias = 0;
   for (int run = 0; run < kRuns; ++run) {
     const auto seed = static_cast<std::uint64_t>(run + 1);
-    const Random random(seed);
-    ImuErrors errors;
-    for (int k = 0; k < 3; ++k) {
-      const auto axis = static_cast<std::uint64_t>(k);
-      errors.rate_bias[k] = 0.005 * random.normal(100, axis);
-      errors.force_bias[k] = 0.05 * random.normal(101, axis);
-    }
+    const ImuErrors errors = with_biases({}, seed, 0.005, 0.05);
     InertialFilter filter = slow_filter();
     for (int i = 0; i <= 10000; ++i) filter.update(reading(hand_motion(), i, seed, errors));
     tilt +=
