@@ -141,8 +141,9 @@ void RunWriter::finish(const std::string& module, const RunRequest& request, con
   record.machine = machine_name();
   record.config_yaml = config_yaml;
   remove_path_so_far(path());
-  write_run_record(path() / "run.yaml", record);
   write_atomically(path() / "timing.json", to_json(timing));
+  // Last, as the folder's marker: a folder that is taken away meanwhile never stands there without it.
+  write_run_record(path() / "run.yaml", record);
   folder_.commit();
 }
 

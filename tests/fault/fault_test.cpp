@@ -306,6 +306,20 @@ TEST_P(Faults, WhatItWritesMayBeTakenAwayMeanwhile) {
             << std::flush;
 }
 
+// What tells a complete folder from the rest of one that was taken away.
+TEST(Markers, AreWrittenLast) {
+  const TemporaryFolder folder;
+  saccade_ok(simulation(folder.path() / "d"));
+  saccade_ok(track(folder.path(), folder.path() / "r"));
+  for (const auto& [output, marker] : {std::pair{"d", "dataset.yaml"}, std::pair{"r", "run.yaml"}}) {
+    const fs::file_time_type last = fs::last_write_time(folder.path() / output / marker);
+    for (const auto& entry : fs::recursive_directory_iterator(folder.path() / output))
+      if (entry.is_regular_file()) {
+        EXPECT_LE(entry.last_write_time(), last) << entry.path();
+      }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Calls, Faults, ::testing::Range(std::size_t{0}, calls().size()),
                          [](const auto& index) { return calls()[index.param].name; });
 
