@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <string>
 
 #include "core/error.h"
+#include "core/event_pair.h"
 
 namespace saccade {
 namespace {
@@ -29,25 +31,34 @@ LiveTracker::LiveTracker(const TrackConfig& config, const Dataset& dataset, doub
       tracker_(method_of(config_).make(config_, world_)),
       feed_(*tracker_, world_, start_.world_from_camera) {}
 
+bool LiveTracker::is_good(const Event& event, TimeNs last_ns) const {
+  return event.t_ns >= last_ns && event.x < start_.camera.width && event.y < start_.camera.height;
+}
+
+// In pairs and without branches, since this passes over all events that there are.
 void LiveTracker::check_new_events() const {
-  const int width = start_.camera.width, height = start_.camera.height;
-  TimeNs last_ns = last_ns_.value_or(new_events_.front().t_ns);
-  // Without branches, since this passes over all events that there are.
-  bool is_good = true;
-  for (const Event& event : new_events_) {
-    is_good &= (event.t_ns >= last_ns) & (event.x < width) & (event.y < height);
-    last_ns = event.t_ns;
+  const std::span<const Event> events = new_events_;
+  constexpr EventPair kTimes = event_pair(-1, 0);
+  constexpr std::int64_t kAny = std::numeric_limits<std::int64_t>::max();
+  const EventPair last_x = event_pair(kAny, start_.camera.width - 1);
+  const EventPair last_y = event_pair(kAny, start_.camera.height - 1);
+  EventPair bad{};
+  std::size_t i = 1;
+  for (; i + 2 <= events.size(); i += 2) {
+    const EventPair pair = load_event_pair(&events[i]);
+    bad |= (pair < load_event_pair(&events[i - 1])) & kTimes;
+    bad |= ((pair & 0xFFFF) > last_x) | ((pair >> 16 & 0xFFFF) > last_y);
   }
-  if (!is_good) report_new_events();
+  if ((bad[0] | bad[1] | bad[2] | bad[3]) != 0 ||
+      !is_good(events.front(), last_ns_.value_or(events.front().t_ns)) ||
+      !is_good(events.back(), events[events.size() < 2 ? 0 : events.size() - 2].t_ns))
+    report_new_events();
 }
 
 void LiveTracker::report_new_events() const {
   TimeNs last_ns = last_ns_.value_or(new_events_.front().t_ns);
   std::size_t i = 0;
-  for (; new_events_[i].t_ns >= last_ns && new_events_[i].x < start_.camera.width &&
-         new_events_[i].y < start_.camera.height;
-       ++i)
-    last_ns = new_events_[i].t_ns;
+  for (; is_good(new_events_[i], last_ns); ++i) last_ns = new_events_[i].t_ns;
   const Event& event = new_events_[i];
   const std::string location = fmt::format("events[{}]", i);
   if (event.t_ns < last_ns)

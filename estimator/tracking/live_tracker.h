@@ -43,6 +43,7 @@ class LiveTracker {
   [[nodiscard]] const TrackWorld& world() const { return world_; }
 
  private:
+  [[nodiscard]] bool is_good(const Event& event, TimeNs last_ns) const;
   void check_new_events() const;
   [[noreturn]] void report_new_events() const;
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -12,12 +11,9 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/event_pair.h"
 
 namespace saccade::python {
-
-static_assert(sizeof(Event) == 16 && offsetof(Event, t_ns) == 0 && offsetof(Event, x) == 8 &&
-              offsetof(Event, y) == 10 && offsetof(Event, polarity) == 12 &&
-              std::endian::native == std::endian::little);
 
 namespace {
 
@@ -29,6 +25,15 @@ py::dtype make_event_dtype() {
   };
   return py::dtype(list("x", "y", "p", "t"), list("<u2", "<u2", "?", "<i8"), list(8, 10, 12, 0),
                    sizeof(Event));
+}
+
+/// Events with -1 and 1 where numpy's have 0 and another number. Without a branch, which would be
+/// guessed wrong at every other event.
+EventPair with_signs(const EventPair& pair) {
+  constexpr EventPair kPolarity = event_pair(0, std::int64_t{0xFF} << 32);
+  constexpr EventPair kOn = event_pair(0, std::int64_t{1} << 32);
+  const EventPair off = ((pair & kPolarity) == 0) & kPolarity;
+  return (pair & ~kPolarity) | off | (kOn & ~off);
 }
 
 }  // namespace
@@ -60,15 +65,15 @@ std::size_t event_count(const py::array& array) {
 void copy_events(const py::array& array, std::span<Event> events) {
   const auto* at = static_cast<const std::byte*>(array.data());
   const py::ssize_t stride = array.strides(0);
-  // By words: a byte that is written and then read with its neighbours waits for the cache.
-  constexpr std::uint64_t kPolarity = std::uint64_t{0xFF} << 32;
-  constexpr std::uint64_t kOn = std::uint64_t{1} << 32;
-  for (Event& event : events) {
-    std::array<std::uint64_t, 2> words;
-    std::memcpy(words.data(), at, sizeof(Event));  // a view may lie anywhere
-    words[1] = (words[1] & ~kPolarity) | ((words[1] & kPolarity) != 0 ? kOn : kPolarity);
-    std::memcpy(static_cast<void*>(&event), words.data(), sizeof(Event));
-    at += stride;
+  std::size_t i = 0;
+  if (stride == static_cast<py::ssize_t>(sizeof(Event)))
+    for (; i + 2 <= events.size(); i += 2, at += 2 * stride)
+      store_event_pair(with_signs(load_event_pair(at)), &events[i]);
+  for (; i < events.size(); ++i, at += stride) {
+    std::array<Event, 2> pair;
+    std::memcpy(static_cast<void*>(pair.data()), at, sizeof(Event));
+    store_event_pair(with_signs(load_event_pair(pair.data())), pair.data());
+    events[i] = pair[0];
   }
 }
 

@@ -311,7 +311,8 @@ TEST(Markers, AreWrittenLast) {
   const TemporaryFolder folder;
   saccade_ok(simulation(folder.path() / "d"));
   saccade_ok(track(folder.path(), folder.path() / "r"));
-  for (const auto& [output, marker] : {std::pair{"d", "dataset.yaml"}, std::pair{"r", "run.yaml"}}) {
+  for (const auto& [output, marker] :
+       {std::pair{"d", "dataset.yaml"}, std::pair{"r", "run.yaml"}}) {
     const fs::file_time_type last = fs::last_write_time(folder.path() / output / marker);
     for (const auto& entry : fs::recursive_directory_iterator(folder.path() / output))
       if (entry.is_regular_file()) {
