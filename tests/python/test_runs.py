@@ -62,6 +62,32 @@ def test_what_a_tracker_cannot_take_is_an_error(walls):
         saccade.Tracker(walls, method="frames")
 
 
+@pytest.mark.parametrize("field, value", [("t", -1), ("x", 120), ("x", 65535), ("y", 90), ("y", 65535)])
+def test_a_bad_event_is_found_wherever_it_stands(walls, field, value):
+    tracker = saccade.Tracker(walls, config=FAST)
+    start = np.zeros(2, saccade.EVENT_DTYPE)
+    start["x"], start["y"] = 119, 89
+    tracker.feed(start)
+    for count in range(1, 7):
+        for bad in range(count):
+            part = np.repeat(start[:1], count)
+            part[field][bad] = value
+            with pytest.raises(saccade.InputError, match=rf"events\[{bad}\]: "):
+                tracker.feed(part)
+
+
+def test_polarities_are_those_of_the_array_whatever_its_stride(walls):
+    rows = np.array(walls.events.data[:3001])
+    twice = np.zeros((len(rows), 2), rows.dtype)
+    twice[:, 0] = rows
+    found = []
+    for part in (rows, twice[:, 0]):
+        tracker = saccade.Tracker(walls, config={"method": "polarity"})
+        found.append(np.concatenate([tracker.feed(part).trajectory, tracker.finish().trajectory]))
+    assert len(found[0]) > 0
+    assert np.array_equal(found[0], found[1])
+
+
 def test_overrides_and_windows_reach_the_module(walls):
     run = saccade.run("track", walls, config={"edges": {"samples": 20}}, edges__iterations=3, duration_s=0.1, seed=7)
     assert "samples: 20" in run._native.config_yaml and "iterations: 3" in run._native.config_yaml
