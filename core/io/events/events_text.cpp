@@ -14,6 +14,7 @@
 
 #include "core/check.h"
 #include "core/error.h"
+#include "core/io/events/usual_line.h"
 #include "core/io/files/atomic_file.h"
 #include "core/io/files/zip_archive.h"
 #include "core/io/tables/text_table.h"
@@ -128,9 +129,19 @@ class EventTextReader final : public EventReader {
     result.last_ns = previous;
     TextLines lines(reader_.name(), text, before);
     std::string_view line;
-    while (lines.next(line)) {
+    Event event;
+    for (;;) {
+      const std::size_t length = read_usual_line(lines.rest(), event);
+      if (length > 0 && event.t_ns >= result.last_ns && event.t_ns < window_.end_ns &&
+          is_on_sensor(event)) {
+        lines.skip_line(length);
+        result.last_ns = event.t_ns;
+        if (!result.first_ns) result.first_ns = event.t_ns;
+        if (event.t_ns >= window_.start_ns) result.events.push_back(event);
+        continue;
+      }
+      if (!lines.next(line)) break;
       TextRow row = lines.row(line);
-      Event event;
       event.t_ns = result.last_ns = read_time(row, result.last_ns);
       if (!result.first_ns) result.first_ns = event.t_ns;
       result.is_over = event.t_ns >= window_.end_ns;
@@ -144,6 +155,11 @@ class EventTextReader final : public EventReader {
     }
     result.lines = lines.line_number() - before;
     return result;
+  }
+
+  [[nodiscard]] bool is_on_sensor(const Event& event) const {
+    return (size_.width <= 0 || event.x < size_.width) &&
+           (size_.height <= 0 || event.y < size_.height);
   }
 
   void take(const ParsedLines& parsed, Events& events) {

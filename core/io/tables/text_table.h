@@ -1,9 +1,7 @@
 #pragma once
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <span>
@@ -12,6 +10,7 @@
 #include <vector>
 
 #include "core/event.h"
+#include "core/io/tables/leading_digits.h"
 
 namespace saccade {
 
@@ -39,8 +38,8 @@ class TextRow {
   [[nodiscard]] double number(const char* name);
   [[nodiscard]] std::int64_t integer(const char* name) {
     skip_separator();
-    if (const ShortNumber number = short_number(); number.digits > 0) {
-      rest_ += number.digits;
+    if (const LeadingDigits number = short_number(); number.count > 0) {
+      rest_ += number.count;
       return number.value;
     }
     return long_integer(name);
@@ -70,26 +69,14 @@ class TextRow {
   }
   void skip_comma();
 
-  struct ShortNumber {
-    std::uint32_t digits = 0;  ///< 0: no unsigned number of 1..7 digits, or one too near to the end
-    std::uint32_t value = 0;
-  };
-  /// Without a branch per digit, which the processor cannot predict in coordinates: the eight bytes
-  /// are handled at once, the digits moved to the top and their values combined pairwise.
-  [[nodiscard]] ShortNumber short_number() const {
+  /// An unsigned number of 1 to 7 digits, the whole field; no digits where it is none or too near to
+  /// the end.
+  [[nodiscard]] LeadingDigits short_number() const {
     if (readable_end_ - rest_ < 8) return {};
-    std::uint64_t bytes = 0;
-    std::memcpy(&bytes, rest_, sizeof bytes);
-    bytes ^= 0x3030303030303030;  // digits become 0..9, everything else more
-    const std::uint64_t others = ((bytes + 0x7676767676767676) | bytes) & 0x8080808080808080;
-    const auto digits = static_cast<std::uint32_t>(std::countr_zero(others)) / 8;
-    if (digits == 0 || digits == 8 || !ends_field(rest_ + digits)) return {};
-    bytes <<= 64 - 8 * digits;
-    bytes = bytes * 10 + (bytes >> 8);
-    bytes = ((bytes & 0x000000FF000000FF) * 0x000F424000000064 +
-             ((bytes >> 16) & 0x000000FF000000FF) * 0x0000271000000001) >>
-            32;
-    return {digits, static_cast<std::uint32_t>(bytes)};
+    const LeadingDigits digits = leading_digits(rest_);
+    return digits.count > 0 && digits.count < 8 && ends_field(rest_ + digits.count)
+               ? digits
+               : LeadingDigits{};
   }
   [[nodiscard]] std::int64_t long_integer(const char* name);
   [[noreturn]] void fail_end(const char* columns) const;
@@ -117,6 +104,13 @@ class TextLines {
 
   /// The next line; false where there is none.
   [[nodiscard]] bool next(std::string_view& line);
+  /// What comes after that line.
+  [[nodiscard]] std::string_view rest() const { return rest_; }
+  /// In place of next(): takes the next line, which with its end has so many bytes of rest().
+  void skip_line(std::size_t length) {
+    rest_.remove_prefix(length);
+    ++line_;
+  }
   /// Number of the line that next() gave, from 1; after the last one, how many there are.
   [[nodiscard]] std::size_t line_number() const { return line_; }
   [[nodiscard]] TextRow row(std::string_view line) const {

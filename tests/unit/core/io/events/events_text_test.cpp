@@ -66,6 +66,43 @@ TEST(EventsText, NamesTheLineOfWhatIsWrong) {
   EXPECT_THAT(parse_error("1 1.5 0 1\n"), HasSubstr("x: expected a whole number, found '1.5'"));
 }
 
+/// The same lines, each with a blank at its end, which read_usual_line() leaves to the general reader.
+std::string in_general_form(const std::string& text) {
+  std::string general;
+  for (const char c : text) {
+    if (c == '\n') general += ' ';
+    general += c;
+  }
+  return general;
+}
+
+// What one of the two ways to read a line takes, the other takes, and what one refuses.
+TEST(EventsText, LinesOfUsualFormAreReadAsAllOthers) {
+  const std::string behind = "9999999.5 1 2 1\n9999999.5 2 2 1\n9999999.5 3 2 1\n9999999.5 4 2 1\n";
+  for (const std::string time : {"0.0", "1.5", "12.25", "0.123456789", "0.12345678", "1.000000001",
+                                 "9999999.999999999", "1.1234567894", "1.1234567895", "1", "1.",
+                                 ".5", "12345678.5", "+1.5", "-1.5", "1e0", "1.5e1", "", "1.5.5"})
+    for (const std::string place :
+         {"0 0", "239 179", "007 7", "240 0", "0 180", "65536 0", "-1 0", "12345678 1",
+          "99999999999 1", "1", "1  2", "1\t2", "1,2", "1.5 2"})
+      for (const std::string polarity : {"0", "1", "-1", "2", "01", "", "1 1", "1\r"}) {
+        std::string line = time;
+        line += ' ';
+        line += place;
+        line += ' ';
+        line += polarity;
+        line += '\n';
+        line += behind;
+        SCOPED_TRACE(line);
+        const std::string error = parse_error(line);
+        const std::string general_error = parse_error(in_general_form(line));
+        ASSERT_EQ(error.substr(error.rfind('/') + 1),
+                  general_error.substr(general_error.rfind('/') + 1));
+        if (error != "no error") continue;
+        ASSERT_EQ(parse_events(line), parse_events(in_general_form(line)));
+      }
+}
+
 TEST(EventsText, EmptyFileHoldsNoEvents) {
   EXPECT_TRUE(parse_events("").empty());
   EXPECT_TRUE(parse_events("# nothing\n").empty());
