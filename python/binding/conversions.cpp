@@ -70,10 +70,10 @@ void copy_events(const py::array& array, std::span<Event> events) {
     for (; i + 2 <= events.size(); i += 2, at += 2 * stride)
       store_event_pair(with_signs(load_event_pair(at)), &events[i]);
   for (; i < events.size(); ++i, at += stride) {
-    std::array<Event, 2> pair;
-    std::memcpy(static_cast<void*>(pair.data()), at, sizeof(Event));
-    store_event_pair(with_signs(load_event_pair(pair.data())), pair.data());
-    events[i] = pair[0];
+    std::array<std::int64_t, 2> words;
+    std::memcpy(words.data(), at, sizeof(Event));
+    const EventPair pair = with_signs(EventPair{words[0], words[1], 0, 0});
+    std::memcpy(static_cast<void*>(&events[i]), &pair, sizeof(Event));
   }
 }
 
