@@ -19,8 +19,9 @@ class TemporaryPath {
   std::filesystem::path path_;
 };
 
-/// Removes what stands at all of them, for a program that ends at once: from then on no thread can make
-/// another one.
+/// Removes what stands at all of them, for a program that ends at once: all other threads are held for good
+/// (other_threads.h), so that none writes anew what was removed. From then on only async-signal-safe functions may be
+/// called.
 void remove_temporary_paths();
 
 }  // namespace saccade

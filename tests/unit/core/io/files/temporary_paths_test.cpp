@@ -9,6 +9,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include "core/io/files/atomic_file.h"
 #include "core/process/interruption.h"
@@ -56,6 +59,34 @@ TEST(TemporaryPaths, GoWithAProgramThatASignalEnds) {
   EXPECT_EQ(exit_code_after(SIGINT, name), 130);
   EXPECT_TRUE(fs::is_empty(name));
   EXPECT_EQ(exit_code_after(SIGTERM, name), 143);
+  EXPECT_TRUE(fs::is_empty(name));
+  fs::remove_all(name);
+}
+
+TEST(TemporaryPaths, DoNotComeBackWhileASignalEndsTheProgram) {
+  std::string name = (fs::temp_directory_path() / "signal_XXXXXX").string();
+  ASSERT_NE(mkdtemp(name.data()), nullptr);
+  const pid_t child = fork();
+  if (child == 0) {
+    std::freopen("/dev/null", "w", stderr);
+    end_on_interruption();
+    std::vector<std::thread> writers;
+    for (int i = 0; i < 3; ++i)
+      writers.emplace_back([path = fs::path(name) / std::to_string(i)] {
+        const TemporaryPath temporary(path);
+        for (;;) {
+          fs::create_directory(path);
+          std::ofstream(path / "file") << "a half";
+        }
+      });
+    while (!fs::exists(fs::path(name) / "2" / "file")) std::this_thread::yield();
+    kill(getpid(), SIGTERM);
+    for (;;) pause();
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 143);
   EXPECT_TRUE(fs::is_empty(name));
   fs::remove_all(name);
 }
