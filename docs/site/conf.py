@@ -10,7 +10,8 @@ version = release = re.search(r"project\(saccade VERSION ([0-9.]+)", (TREE / "CM
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "sphinx.ext.napoleon", "sphinx_copybutton"]
 root_doc = "README"
-include_patterns = ["*.md", "docs/*.md", "docs/**/*.md", "reports/*.md", "reports/benchmark/README.md", "tests/calibration/README.md", "examples/ci/README.md"]
+include_patterns = ["*.md", "docs/*.md", "docs/**/*.md", "reports/*.md", "reports/benchmark/README.md", "tests/calibration/README.md", "examples/ci/README.md",
+                    "submit/README.md"]
 exclude_patterns = ["docs/site/*"]
 
 # The slugs of headings are those of GitHub, which the links of the pages mean.
