@@ -39,6 +39,8 @@ struct DepthResult {
       stages_s;  ///< time per stage, the same names in all windows
   /// By how much the gates of accuracy were opened to find enough points; 1: not at all.
   double gate_opening = 1;
+  double event_delay_s =
+      0;  ///< by how much the events came later than the poses, which was taken out
   std::string why_empty = {};  ///< of a view without points: what dropped its candidates
 };
 

@@ -49,6 +49,19 @@ void say_what_is_poor(std::span<const DepthResult> results) {
         fmt::format("{} of {} views are empty; of the last, {}", empty, results.size(), why));
 }
 
+/// A delay that moves edges of a fast camera by a tenth of a pixel: clocks are to be looked at, or a sensor is congested.
+void say_how_late(std::span<const DepthResult> results) {
+  constexpr double kNotable_s = 2e-4;
+  double largest_s = 0;
+  for (const DepthResult& result : results)
+    if (std::abs(result.event_delay_s) > std::abs(largest_s)) largest_s = result.event_delay_s;
+  if (std::abs(largest_s) >= kNotable_s)
+    show_notice(
+        fmt::format("events come up to {:.2g} ms {} than the poses say; it was taken out "
+                    "(rays.find_delay)",
+                    1e3 * std::abs(largest_s), largest_s > 0 ? "later" : "earlier"));
+}
+
 }  // namespace
 
 RunSummary run_depth(const RunRequest& request) {
@@ -78,6 +91,7 @@ RunSummary run_depth(const RunRequest& request) {
                 timing);
 
   say_what_is_poor(results);
+  say_how_late(results);
   std::size_t points = 0;
   for (const DepthResult& result : results) points += result.points.size();
   return summary_of(timing, fmt::format("{} points in {} views", points, windows.size()));

@@ -99,6 +99,8 @@ Mapper::Mapper(const MappingOptions& options, const PinholeCamera& camera)
     : options_(options), camera_(camera) {
   // With few edges less certain ones are taken by the rules of the map (min_edges).
   options_.depth.rays.least_points = 0;
+  // Its poses are of the same events.
+  options_.depth.rays.find_delay = false;
 }
 
 Mapping Mapper::map(std::span<const Event> events, const PathEstimate& path) const {

@@ -31,8 +31,13 @@ struct ViewWindow {
   const Trajectory* trajectory = nullptr;  ///< world_from_camera; spans the events and reference_s
   double reference_s = 0;                  ///< time of the view, within the events or at their ends
   PoseNoise pose_noise = {};               ///< of the recording that the trajectory is of
+  double event_delay_s = 0;                ///< by how much the events come later than what they saw
 
   [[nodiscard]] Rigid3 world_from_reference() const { return trajectory->at_clamped(reference_s); }
+  /// What the events of a time saw.
+  [[nodiscard]] Rigid3 world_from_camera(double event_s) const {
+    return trajectory->at_clamped(event_s - event_delay_s);
+  }
 };
 
 /// Those of the events that lie within the poses' time: beyond it no pose is known.

@@ -13,17 +13,17 @@ namespace {
 /// for f = 250 px.
 constexpr TimeNs kPieceNs = 1'000'000;
 
-/// The camera over time, in the reference frame.
+/// The camera as the events of a time saw it, in the reference frame.
 class CameraPath {
  public:
   CameraPath(const ViewWindow& window, const PinholeCamera& camera)
-      : trajectory_(*window.trajectory),
+      : window_(window),
         reference_from_world_(window.world_from_reference().inverse()),
         k_(camera.matrix()),
         k_inverse_(k_.inverse()) {}
 
   [[nodiscard]] Rigid3 pose(double t_s) const {
-    return reference_from_world_ * trajectory_.at_clamped(t_s);
+    return reference_from_world_ * window_.world_from_camera(t_s);
   }
   /// K R K^-1.
   [[nodiscard]] Eigen::Matrix3d homography(const Rigid3& pose) const {
@@ -33,7 +33,7 @@ class CameraPath {
   [[nodiscard]] const Eigen::Matrix3d& k_inverse() const { return k_inverse_; }
 
  private:
-  const Trajectory& trajectory_;
+  const ViewWindow& window_;
   Rigid3 reference_from_world_;
   Eigen::Matrix3d k_;
   Eigen::Matrix3d k_inverse_;

@@ -8,12 +8,15 @@
 #include "core/process/parallel.h"
 #include "core/stopwatch.h"
 #include "estimator/depth/rays/edgel_index.h"
+#include "estimator/depth/rays/event_delay.h"
 
 namespace saccade {
 namespace {
 
 constexpr int kTile_px = 16;
 constexpr int kStripTiles = 3;
+/// A third of them become edgels, and hundreds of these tell the delay of events to microseconds.
+constexpr std::size_t kDelaySeeds = 1500;
 
 // Seeds that are refined on their own; weaker ones, those with less parallax and those off the best
 // plane of their pixel need neighbours that predict their depth.
@@ -50,6 +53,17 @@ SeedStrips sorted_into_strips(const std::vector<EdgelSeed>& seeds, int height) {
     sorted[static_cast<std::size_t>(std::min(row / kStripTiles, strips - 1))].push_back(
         seeds[index]);
   return sorted;
+}
+
+/// Of each strip an equal share, about `count` in all.
+SeedStrips some_of(const SeedStrips& strips, std::size_t count) {
+  std::size_t all = 0;
+  for (const auto& strip : strips) all += strip.size();
+  const std::size_t step = std::max<std::size_t>(1, all / count);
+  SeedStrips some(strips.size());
+  for (std::size_t k = 0; k < strips.size(); ++k)
+    for (std::size_t i = 0; i < strips[k].size(); i += step) some[k].push_back(strips[k][i]);
+  return some;
 }
 
 /// Appends the edgels of the strips, without those that an earlier strip found beyond its border.
@@ -89,6 +103,12 @@ void describe(config::Fields& fields, RayDepthOptions& options) {
              "opened by 3, then by 10 (never beyond a sigma of 0.2), and the run says so; 0 keeps "
              "the gates as they are.")
       .range(0, 1e6);
+  fields.value("find_delay", options.find_delay,
+               "Finds by how much the events of each window come later than the poses say, and "
+               "takes it out: the delay of "
+               "pixels and readout, and the difference of two clocks. Only motion that is not "
+               "uniform tells it. false: they "
+               "come in time, as they do where the poses were made of the same events.");
   fields.section("fusion", options.fusion, "Planes fitted through neighbouring points.");
 }
 
@@ -151,7 +171,7 @@ WindowEdgels RayDepth::find_edgels(const ViewWindow& window) const {
   };
   WindowEdgels found;
   found.pose_error = pose_error_over(window);
-  const EventRays rays = timed(rays_s, [&] {
+  EventRays rays = timed(rays_s, [&] {
     return EventRays(window, camera_, undistortion_, RayDepthOptions::kTimeSlices);
   });
   const SeedStrips strips = timed(seeds_s, [&] {
@@ -168,6 +188,9 @@ WindowEdgels RayDepth::find_edgels(const ViewWindow& window) const {
     for (const EdgelSeed& seed : seeds) found.seeds.push_back(seed.pixel);
     return sorted_into_strips(seeds, camera_.height);
   });
+  if (options_.find_delay) {
+    found.delay = timed(regression_s, [&] { return find_delay(window, strips, rays); });
+  }
   timed(regression_s, [&] { refine_seeds(rays, strips, found); });
   const auto assign = [&] {
     const std::size_t before = found.edges.size();
@@ -208,10 +231,34 @@ DepthResult RayDepth::fuse(const WindowEdgels& found) const {
     }
   }
   result.gate_opening = options_.gate_opening;
+  result.event_delay_s = found.delay.delay_s;
   result.candidates = found.seeds;
   result.stages_s = found.stages_s;
   result.stages_s.emplace_back("fusion", fusion_s);
   return result;
+}
+
+EventDelay RayDepth::find_delay(const ViewWindow& window, const SeedStrips& strips,
+                                EventRays& rays) const {
+  // A round leaves a fifth of the delay, since events that lie beside their edge count less.
+  constexpr int kRounds = 3;
+  // Moves an edge by a hundredth of a pixel at 500 px/s.
+  constexpr double kNoChange_s = 2e-5;
+  const SeedStrips some = some_of(strips, kDelaySeeds);
+  ViewWindow delayed = window;
+  EventDelay delay;
+  for (int round = 0; round < kRounds; ++round) {
+    WindowEdgels found;
+    refine_seeds(rays, some, found);
+    const EventDelay more = estimate_delay(rays, window.events, found.edges, found.events);
+    const EventDelay next = EventDelay{delay.delay_s + more.delay_s, more.sigma_s}.with_prior();
+    const double change_s = next.delay_s - delay.delay_s;
+    if (std::abs(change_s) < kNoChange_s) break;
+    delay = next;
+    delayed.event_delay_s = delay.delay_s;
+    rays = EventRays(delayed, camera_, undistortion_, RayDepthOptions::kTimeSlices);
+  }
+  return delay;
 }
 
 void RayDepth::refine_seeds(const EventRays& rays, const SeedStrips& strips,

@@ -94,7 +94,7 @@ class EdgeOptimizer {
       const Event& event = window_.events[e];
       const double t_s = seconds_from_ns(event.t_ns);
       EdgeObservation observation;
-      observation.view_from_camera = view_from_world_ * window_.trajectory->at_clamped(t_s);
+      observation.view_from_camera = view_from_world_ * window_.world_from_camera(t_s);
       observation.ray = undistorted_.ray(undistortion_(event.x, event.y).cast<double>());
       observation.lag = event.polarity;
       observation.pixel = fitted.edge.pixel.cast<double>();
@@ -188,7 +188,9 @@ RefinedDepth refine_depth_of(const ViewWindow& window, std::span<const EdgePoint
       [&](const RayDepth& opened) {
         RefinedDepth refined;
         WindowEdgels edges = opened.find_edgels(window);
-        EdgeOptimizer optimizer(window, camera);
+        ViewWindow delayed = window;
+        delayed.event_delay_s = edges.delay.delay_s;
+        EdgeOptimizer optimizer(delayed, camera);
         std::vector<FittedEdgel> kept;
         for (FittedEdgel& fitted : edges.edges) {
           const EdgePoint* point = points.near(fitted.edge);
