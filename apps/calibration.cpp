@@ -8,10 +8,10 @@
 #include <numeric>
 #include <span>
 
+#include "core/blind_time.h"
 #include "core/config/config.h"
 #include "core/error.h"
 #include "core/io/files/scratch_folder.h"
-#include "eval/calibration/blind_time.h"
 #include "eval/calibration/noise_rates.h"
 #include "eval/table/number_text.h"
 #include "simulator/replica/effective_contrast.h"

@@ -20,6 +20,8 @@ struct MosaicOptions : ImageMethodOptions {
     gradient.boundary = Boundary::kNeumann;
     equations.observations.no_event_spacing_px = 0.8;
     equations.observations.dense_events_per_px = 1e9;
+    // A camera that turns fast sees other texture after a blind time than before it.
+    equations.observations.blind_time_us = 0;
     equations.merge_radius_px = 1.1;
     equations.bound_sigma = 0.2;
   }

@@ -2,9 +2,12 @@
 
 #include <fmt/core.h>
 
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "core/blind_time.h"
 #include "core/config/config.h"
 #include "estimator/reconstruction/contrast_thresholds.h"
 #include "estimator/reconstruction/reconstruction_config.h"
@@ -41,6 +44,10 @@ RunSummary run_reconstruction(const RunRequest& request) {
   const ContrastThresholds thresholds =
       contrast_thresholds(config.contrast_on, config.contrast_off, dataset, input.events());
   if (thresholds.is_found) adapt_to_found_thresholds(config.equations);
+  std::optional<double>& blind_time_us = config.observations().blind_time_us;
+  if (!blind_time_us)
+    blind_time_us =
+        find_blind_time_us(input.events(), {dataset.camera().width, dataset.camera().height});
   std::vector<ReconstructionWindow> windows;
   {
     const ScopedTimer clock(timing.io_s);
@@ -69,7 +76,10 @@ RunSummary run_reconstruction(const RunRequest& request) {
   writer.finish("reconstruct", request, dataset, input.window, config.seed, config::print(config),
                 timing);
 
-  return summary_of(timing, fmt::format("{} views{}", windows.size(), found_text(thresholds)));
+  const std::string blind =
+      *blind_time_us > 0 ? fmt::format(", pixels blind for {:.2g} ms", 1e-3 * *blind_time_us) : "";
+  return summary_of(timing,
+                    fmt::format("{} views{}{}", windows.size(), found_text(thresholds), blind));
 }
 
 }  // namespace saccade

@@ -5,8 +5,8 @@
 #include <map>
 #include <vector>
 
+#include "core/blind_time.h"
 #include "core/check.h"
-#include "eval/calibration/blind_time.h"
 
 namespace saccade {
 namespace {

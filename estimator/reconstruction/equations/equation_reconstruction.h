@@ -21,6 +21,7 @@ struct EquationOptions {
       .dense_events_per_px = 40,
       .expected_fraction = 0.4,
       .first_event_sigma = 0.8,
+      .blind_time_us = {},
       .reprojection = {
           .redraw_motion_px = 8, .redraw_parallax_px = 1.4, .discontinuity_margin_px = 1}};
   double merge_radius_px = 0.9;  ///< observations of a run that lie closer are merged

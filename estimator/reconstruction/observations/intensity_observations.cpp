@@ -42,6 +42,13 @@ void describe(config::Fields& fields, ObservationOptions& options, bool has_surf
           "gradient to every pixel, with equations to every fourth, another one each time. "
           "Smaller values give better images of smooth parts and take longer.")
       .range(0.1, 1000);
+  fields
+      .value("blind_time_us", options.blind_time_us,
+             "For so long a pixel is blind after an event, in us: what it misses meanwhile is "
+             "added by the slope around "
+             "it. ~ finds it by the shortest times between two events of a pixel; 0: pixels miss "
+             "nothing.")
+      .range(0, 1e6);
   if (!has_surfaces) return;
   fields
       .value("redraw_parallax_px", options.reprojection.redraw_parallax_px,
@@ -80,6 +87,7 @@ ReprojectedObservations<Path>::ReprojectedObservations(Path path, const PinholeC
     : path_(std::move(path)),
       contrast_on_(static_cast<float>(thresholds.on)),
       contrast_off_(static_cast<float>(thresholds.off)),
+      changes_(thresholds, 1e-6 * options.blind_time_us.value_or(0)),
       options_(options),
       pixels_(camera.width, camera.height),
       strides_((camera.width - 1) / kTile_px + 1, (camera.height - 1) / kTile_px + 1,
@@ -102,6 +110,7 @@ ReprojectedObservations<Path>::ReprojectedObservations(Path path, const PinholeC
 
 template <class Path>
 void ReprojectedObservations<Path>::plan(std::span<const Event> events) {
+  changes_.weigh(events, {pixels_.width(), pixels_.height()});
   Image<int> counts(strides_.width(), strides_.height());
   for (const Event& event : events) ++counts(event.x / kTile_px, event.y / kTile_px);
   for (std::size_t i = 0; i < counts.size(); ++i) {
@@ -124,8 +133,9 @@ void ReprojectedObservations<Path>::observe(std::span<const Event> events,
   for (std::size_t i = 0; i < events.size();) {
     path_.advance(world_from_camera, last_ns);
     for (; i < events.size() && events[i].t_ns <= path_.end_ns(); ++i) {
-      pixels_(events[i].x, events[i].y).log_intensity +=
-          events[i].polarity > 0 ? contrast_on_ : -contrast_off_;  // (2.8)
+      Pixel& pixel = pixels_(events[i].x, events[i].y);
+      pixel.last_change = changes_.next(events[i], pixel.level);
+      pixel.log_intensity += pixel.last_change;  // (2.8)
       if (const auto reprojection = path_.of(events[i]))
         add_event(events[i], *reprojection, observations);
     }
@@ -159,8 +169,7 @@ void ReprojectedObservations<Path>::add_event(const Event& event, const Reprojec
     const bool has_earlier_run = pixel.events > 0;
     pixel.run = runs_++;
     if (has_earlier_run)
-      observations.push_back({pixel.x, pixel.y,
-                              pixel.log_intensity - (is_on ? contrast_on_ : -contrast_off_),
+      observations.push_back({pixel.x, pixel.y, pixel.log_intensity - pixel.last_change,
                               IntensityObservation::tag(pixel.run, kEvent)});
     pixel.events = 0;
   }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "core/image.h"
 #include "core/trajectory.h"
 #include "estimator/reconstruction/contrast_thresholds.h"
+#include "estimator/reconstruction/observations/level_changes.h"
 #include "estimator/reconstruction/observations/panorama_reprojection.h"
 #include "estimator/reconstruction/observations/surface_reprojection.h"
 
@@ -61,6 +63,8 @@ struct ObservationOptions {
   /// standard deviation in thresholds: how far it had come since an event before is not known. 0: the
   /// first event says nothing.
   double first_event_sigma = 0;
+  /// For so long a pixel is blind after an event; nullopt: to be found (find_blind_time_us()), none until then.
+  std::optional<double> blind_time_us = 0;
   ReprojectionOptions reprojection{.redraw_motion_px = 4};
 };
 
@@ -68,14 +72,16 @@ struct ObservationOptions {
 void describe(config::Fields& fields, ObservationOptions& options, bool has_surfaces);
 
 /// Turns events into observations of the reference view. At the instant of an event the log intensity
-/// is exact but for the pixel's offset: the sum of all p C of the pixel so far (2.8).
+/// is exact but for the pixel's offset: the sum of all p C of the pixel so far (2.8), and of what it missed
+/// while it was blind (level_changes.h).
 class ObservationSource {
  public:
   virtual ~ObservationSource() = default;
 
   [[nodiscard]] virtual std::span<const ObservationKind> kinds() const = 0;
 
-  /// Thins no-event constraints where many of `events` lie (dense_events_per_px). Before observe().
+  /// Thins no-event constraints where many of `events` lie (dense_events_per_px), and weighs what pixels miss
+  /// while they are blind. Before observe().
   virtual void plan(std::span<const Event> events) = 0;
 
   /// Appends the observations of `events` (in order of time, and not before those of an earlier
@@ -119,7 +125,9 @@ class ReprojectedObservations : public ObservationSource {
   static constexpr float kNowhere = -1;
 
   struct Pixel {
-    float log_intensity = 0;               ///< sum of p C of its events
+    float log_intensity = 0;  ///< sum of the changes up to its last event
+    float last_change = 0;    ///< from the event before that
+    LevelChanges::Pixel level;
     float inverse_depth = 0;               ///< of the last reprojection; 0: none so far
     float x = 0, y = 0;                    ///< reprojection at its last event
     float observed_x = 0, observed_y = 0;  ///< reprojection at its last observation
@@ -138,6 +146,7 @@ class ReprojectedObservations : public ObservationSource {
 
   Path path_;
   float contrast_on_, contrast_off_;
+  LevelChanges changes_;
   ObservationOptions options_;
   std::array<ObservationKind, kKinds> kinds_;
   Image<Pixel> pixels_;

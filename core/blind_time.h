@@ -32,4 +32,10 @@ struct BlindTime {
 /// `ascending_us` > 0.
 [[nodiscard]] BlindTime blind_time(std::span<const double> ascending_us);
 
+/// The same by the events of some of the pixels [us]; 0 where no floor is seen. Edges of a bounded slope make a floor, too: half as
+/// long where the image moves twice as fast, while a blind time stays the same. 0 therefore also where the floor follows the
+/// rate of the events, where that hardly varies, so that the two cannot be told apart, and where successive short gaps are
+/// equal, as those between interpolated frames are.
+[[nodiscard]] double find_blind_time_us(std::span<const Event> events, SensorSize size);
+
 }  // namespace saccade

@@ -1,0 +1,70 @@
+#include "estimator/reconstruction/observations/level_changes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "core/image.h"
+
+namespace saccade {
+namespace {
+
+/// Of the blind time: pixels that fire sooner after it see a step rather than a ramp, and its blind part is not
+/// steeper by as much as that would say.
+constexpr float kLeastSeen = 0.5F;
+/// Rises and falls of a window that is short or gets darker need not cancel out.
+constexpr double kMostWeight = 1.5;
+
+}  // namespace
+
+LevelChanges::LevelChanges(const ContrastThresholds& thresholds, double blind_s)
+    : on_(static_cast<float>(thresholds.on)),
+      off_(static_cast<float>(thresholds.off)),
+      blind_ns_(static_cast<float>(1e9 * blind_s)) {}
+
+float LevelChanges::seen_ns(TimeNs interval_ns) const {
+  return std::max(static_cast<float>(interval_ns) - blind_ns_, kLeastSeen * blind_ns_);
+}
+
+float LevelChanges::blind_change(const Event& event, Pixel& pixel) const {
+  float change = 0;
+  if (pixel.polarity != 0) {
+    const float slope = threshold(event) / seen_ns(event.t_ns - pixel.t_ns);
+    change = blind_ns_ * (pixel.slope + slope) / 2;
+    pixel.slope = slope;
+  }
+  pixel.t_ns = event.t_ns;
+  pixel.polarity = event.polarity;
+  return change;
+}
+
+void LevelChanges::weigh(std::span<const Event> events, SensorSize size) {
+  rise_weight_ = fall_weight_ = 0;
+  if (blind_ns_ == 0) return;
+  Image<Pixel> pixels(size.width, size.height);
+  double seen = 0, rises = 0, falls = 0, pairs = 0, agreeing = 0;
+  for (const Event& event : events) {
+    Pixel& pixel = pixels(event.x, event.y);
+    if (pixel.polarity != 0) {
+      // Steep slopes count as much as their blind changes.
+      const double weight = 1 / static_cast<double>(seen_ns(event.t_ns - pixel.t_ns));
+      pairs += weight;
+      agreeing += weight * event.polarity * pixel.polarity;
+    }
+    seen += static_cast<double>(threshold(event));
+    const auto blind = static_cast<double>(blind_change(event, pixel));
+    (blind > 0 ? rises : falls) += std::abs(blind);
+  }
+  const double correlation = pairs > 0 ? std::max(0.0, agreeing / pairs) : 0;
+  const double share = correlation * correlation;
+  rises *= share;
+  falls *= share;
+  if (!(rises > 0 && falls > 0)) return;
+  // seen + w rises - falls / w = 0.
+  const double w = (std::sqrt(seen * seen + 4 * rises * falls) - seen) / (2 * rises);
+  const double balanced = std::clamp(w, 1 / kMostWeight, kMostWeight);
+  rise_weight_ = static_cast<float>(share * balanced);
+  fall_weight_ = static_cast<float>(share / balanced);
+}
+
+}  // namespace saccade
