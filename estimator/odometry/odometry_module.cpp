@@ -31,6 +31,11 @@ Trajectory start_poses(const RunRequest& request, const Dataset& dataset,
   const double from_s = seconds_from_ns(events.front().t_ns);
   const double whole_s = seconds_from_ns(events.back().t_ns) - from_s;
   const double truth_s = std::min(options.truth_s, options.truth_fraction * whole_s);
+  if (truth_s < 0.99 * options.truth_s)
+    show_notice(fmt::format(
+        "start.truth_s of {:.3g} s is cut to {:.3g} s, of the events' time the part that "
+        "start.truth_fraction allows ({:g})",
+        options.truth_s, truth_s, options.truth_fraction));
   Trajectory start = given_start(request, dataset, from_s, from_s + truth_s, options.time_offset_s);
   if (start.size() < 2)
     throw InputError(
@@ -39,6 +44,22 @@ Trajectory start_poses(const RunRequest& request, const Dataset& dataset,
                     "for",
                     truth_s));
   return start;
+}
+
+/// Says where the given poses move points at the scene's mean depth by so little that they hardly tell it.
+void say_how_far(const Trajectory& start, const Dataset& dataset, const PinholeCamera& camera) {
+  constexpr double kPoor_px = 4;
+  const std::optional<double> depth_m = dataset.facts().mean_depth_m;
+  if (!depth_m) return;
+  const Eigen::Vector3d moved_m = start.poses().back().world_from_camera.translation() -
+                                  start.poses().front().world_from_camera.translation();
+  const double moved_px = camera.fx * moved_m.norm() / *depth_m;
+  if (moved_px < kPoor_px)
+    show_notice(fmt::format(
+        "the given poses of the first {:.3g} s move the camera by {:.2g} px of the scene's mean "
+        "depth alone: scale and direction may be wrong by some percent; give more of them "
+        "(start.truth_s, start.truth_fraction), or begin where it moves (--start-s)",
+        start.end_s() - start.start_s(), moved_px));
 }
 
 /// The path at the start from events alone.
@@ -75,6 +96,7 @@ Start start_of(const RunRequest& request, const Dataset& dataset, const PinholeC
   Start start;
   if (options.truth_s > 0) {
     start.path.poses = start_poses(request, dataset, events, options);
+    say_how_far(start.path.poses, dataset, camera);
     start.from_s = start.path.poses.end_s();
     start.path.fixed_until_s = start.path.given_until_s = start.from_s;
     return start;
@@ -229,6 +251,8 @@ RunSummary summary_of(const OdometryFound& found, const OdometryConfig& config,
     text += ", not adjusted as a whole";
   if (const auto& inertial = found.result.inertial)
     text += fmt::format(", scale {:.4g} +- {:.2g} %", inertial->scale, 100 * inertial->scale_sigma);
+  if (found.images_s > 0)
+    text += fmt::format("; besides, its images took {:.1f} s (mapping.image)", found.images_s);
   RunSummary summary = summary_of(timing, text);
   summary.lost_poses = lost;
   summary.lost_since_s = lost_since_s(found.result.poses);

@@ -66,7 +66,11 @@ py::dict compare_trajectories(const PoseArray& estimate, const PoseArray& truth,
 
 py::dict trajectory_errors(const PoseArray& estimate, const PoseArray& truth,
                            const std::optional<double>& mean_depth_m) {
-  ErrorSeries series = errors_over_time(score_input_of(estimate, truth, mean_depth_m));
+  TrajectoryScoreInput input = score_input_of(estimate, truth, mean_depth_m);
+  // Where nothing is estimated there is no error.
+  if (input.estimate.size() > 0)
+    input.window = RunRecord::Window{input.estimate.start_s(), input.estimate.end_s()};
+  ErrorSeries series = errors_over_time(input);
   py::dict dict;
   dict["t"] = values_array(std::move(series.t_s));
   dict["dt_m"] = values_array(std::move(series.dt_m));

@@ -83,7 +83,7 @@ def rpe(estimate: np.ndarray, truth: np.ndarray) -> dict[str, Optional[float]]:
 
 def errors(estimate: np.ndarray, truth: np.ndarray,
            mean_depth_m: Optional[float] = None) -> dict[str, np.ndarray]:
-    """Errors over time every millisecond: ``t``, ``dt_m``, ``dt_rel_percent`` (empty without a depth), ``dtheta_deg``."""
+    """Errors from the first estimated pose to the last, every millisecond: ``t``, ``dt_m``, ``dt_rel_percent`` (empty without a depth), ``dtheta_deg``."""
     return _native.trajectory_errors(estimate, truth, mean_depth_m)
 
 

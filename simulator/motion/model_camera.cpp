@@ -28,7 +28,11 @@ constexpr double kShortestKey_s = 0.004;
 
 const ModelCamera& find_camera(const Model& model, const ModelCameraOptions& options) {
   const std::string source_name = options.file.string();
-  if (model.cameras.empty()) throw InputError(source_name, "holds no camera");
+  if (model.cameras.empty())
+    throw InputError(
+        source_name,
+        "holds no camera; exporters leave it out unless they are told (Blender: Include, "
+        "Cameras)");
   std::vector<std::string> names;
   for (const ModelCamera& camera : model.cameras) {
     if (camera.name == options.camera) return camera;

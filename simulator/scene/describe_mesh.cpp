@@ -62,8 +62,8 @@ std::string vector_text(const Eigen::Vector3d& v) {
 
 /// Which axis is up by the format's definition or habit.
 bool is_y_up(const fs::path& path) {
-  static const std::set<std::string> kYUp{".gltf", ".glb", ".fbx", ".dae", ".zae", ".ac",
-                                          ".acc",  ".x3d", ".obj", ".b3d", ".x"};
+  static const std::set<std::string> kYUp{".gltf", ".glb", ".fbx", ".dae", ".zae",
+                                          ".ac",   ".acc", ".x3d", ".b3d", ".x"};
   return kYUp.contains(lower_ending(path));
 }
 
@@ -99,6 +99,18 @@ std::string camera_line(const Model& model, const ModelCamera& camera, bool is_t
           vector_text(position), vector_text(target)));
 }
 
+/// Where an animation is stated: a camera that it moves is a trajectory.
+std::string played_by(const Model& model, const ModelAnimation& animation, const fs::path& file) {
+  const std::vector<bool> moved = NodeAnimation(model.tree, &animation).moved_nodes();
+  for (const ModelCamera& camera : model.cameras)
+    if (camera.node >= 0 && moved[static_cast<std::size_t>(camera.node)])
+      return fmt::format(
+          "; it moves the camera '{}': trajectory: {{source: model_camera, model: '{}', camera: "
+          "'{}', model_up: {}}}",
+          camera.name, file.string(), camera.name, is_y_up(file) ? "y" : "z");
+  return fmt::format("; `animation: '{}'` in the entry below plays it", animation.name);
+}
+
 /// Animations and cameras.
 std::string motion_lines(const fs::path& file, bool is_turned) {
   std::string text;
@@ -109,8 +121,8 @@ std::string motion_lines(const fs::path& file, bool is_turned) {
     text += mesh_line("animation",
                       fmt::format("{} '{}' of {:.4g} s moves {} nodes{}", i, animation.name,
                                   animation.duration_s, animation.channels.size(),
-                                  problem.empty() ? "; `animation` in the entry below plays it"
-                                                  : "; cannot be played: it " + problem));
+                                  !problem.empty() ? "; cannot be played: it " + problem
+                                                   : played_by(model, animation, file)));
   }
   for (const ModelCamera& camera : model.cameras) text += camera_line(model, camera, is_turned);
   return text;
@@ -119,10 +131,25 @@ std::string motion_lines(const fs::path& file, bool is_turned) {
 /// A model of less than a millimetre or more than ten kilometres is in other units than metres.
 constexpr double kSmallest_m = 1e-3, kLargest_m = 1e4;
 
+/// Formats of surfaces alone, which are of either kind.
+bool tells_no_up(const fs::path& path) {
+  static const std::set<std::string> kEither{".obj", ".ply", ".stl", ".off"};
+  return kEither.contains(lower_ending(path));
+}
+
 std::string suggestion(const fs::path& file, const Eigen::Vector3d& size, bool is_turned) {
   std::string text =
       fmt::format("  - {{file: '{}', up: {}}}\n", file.string(), is_turned ? "y" : "z");
+  if (tells_no_up(file))
+    text +=
+        "  (the format does not say which axis is up: up: y where a preview lies on its side)\n";
   const double largest = size.maxCoeff();
+  constexpr double kLargestRoom_m = 50;
+  if (lower_ending(file) == ".fbx" && largest > kLargestRoom_m)
+    text += fmt::format(
+        "  (many programs write FBX in centimetres: state transform.scale: 0.01, or size_m, which "
+        "is {} now)\n",
+        vector_text(size));
   if (largest < kSmallest_m || largest > kLargest_m)
     text += fmt::format("  (its units are hardly metres: state size_m, which is {} now)\n",
                         vector_text(size));
@@ -136,10 +163,13 @@ std::string problem_lines(const SceneRemarks& remarks) {
 }
 
 std::string counts_of(const Mesh& mesh) {
+  // Importers add materials that nothing has.
+  std::set<std::uint32_t> used;
+  for (const Triangle& triangle : mesh.triangles) used.insert(triangle.material);
   const auto textured = std::ranges::count_if(
-      mesh.materials, [](const Material& material) { return material.texture != nullptr; });
+      used, [&](std::uint32_t material) { return mesh.materials[material].texture != nullptr; });
   return fmt::format("{} triangles, {} materials ({} with textures)", mesh.triangles.size(),
-                     mesh.materials.size(), textured);
+                     used.size(), textured);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ TEST_F(DescribeMesh, SaysSizeTrianglesAndAnEntryThatStandsItUpright) {
   const std::string text = describe_mesh(write("square.obj", testing::square_obj()));
   EXPECT_THAT(text, HasSubstr("[1, 1, 0] from [0, 0, 0] to [1, 1, 0]"));
   EXPECT_THAT(text, HasSubstr("2 triangles"));
-  EXPECT_THAT(text, HasSubstr("square.obj', up: y}"));
+  EXPECT_THAT(text, HasSubstr("square.obj', up: z}"));
   EXPECT_THAT(text, Not(HasSubstr("hardly metres")));
 }
 
