@@ -8,7 +8,7 @@
 #include "core/process/parallel.h"
 #include "core/stopwatch.h"
 #include "estimator/depth/rays/edgel_index.h"
-#include "estimator/depth/rays/event_delay.h"
+#include "estimator/depth/rays/stream_delay.h"
 
 namespace saccade {
 namespace {
@@ -238,20 +238,20 @@ DepthResult RayDepth::fuse(const WindowEdgels& found) const {
   return result;
 }
 
-EventDelay RayDepth::find_delay(const ViewWindow& window, const SeedStrips& strips,
-                                EventRays& rays) const {
+StreamDelay RayDepth::find_delay(const ViewWindow& window, const SeedStrips& strips,
+                                 EventRays& rays) const {
   // A round leaves a fifth of the delay, since events that lie beside their edge count less.
   constexpr int kRounds = 3;
   // Moves an edge by a hundredth of a pixel at 500 px/s.
   constexpr double kNoChange_s = 2e-5;
   const SeedStrips some = some_of(strips, kDelaySeeds);
   ViewWindow delayed = window;
-  EventDelay delay;
+  StreamDelay delay;
   for (int round = 0; round < kRounds; ++round) {
     WindowEdgels found;
     refine_seeds(rays, some, found);
-    const EventDelay more = estimate_delay(rays, window.events, found.edges, found.events);
-    const EventDelay next = EventDelay{delay.delay_s + more.delay_s, more.sigma_s}.with_prior();
+    const StreamDelay more = estimate_delay(rays, window.events, found.edges, found.events);
+    const StreamDelay next = StreamDelay{delay.delay_s + more.delay_s, more.sigma_s}.with_prior();
     const double change_s = next.delay_s - delay.delay_s;
     if (std::abs(change_s) < kNoChange_s) break;
     delay = next;

@@ -16,11 +16,11 @@
 #include "estimator/depth/rays/edgel_refiner.h"
 #include "estimator/depth/rays/edgel_seeds.h"
 #include "estimator/depth/rays/event_assignment.h"
-#include "estimator/depth/rays/event_delay.h"
 #include "estimator/depth/rays/event_rays.h"
 #include "estimator/depth/rays/gate_counts.h"
 #include "estimator/depth/rays/local_planes.h"
 #include "estimator/depth/rays/planar_fusion.h"
+#include "estimator/depth/rays/stream_delay.h"
 
 namespace saccade {
 
@@ -39,7 +39,7 @@ struct RayDepthOptions {
   /// Relative, of the own events of an edgel that is confirmed by its neighbours.
   double propagation_max_sigma = 0.05;
   FusionOptions fusion;
-  bool find_delay = true;  ///< of the events behind the poses (event_delay.h), and to take it out
+  bool find_delay = true;  ///< of the events behind the poses (stream_delay.h), and to take it out
   /// Where set, edgels whose depth their events do not tell are found, too, at this inverse depth
   /// [1/m] within kAssumedSigma of it: they say how the camera rotates.
   std::optional<double> assumed_inverse_depth;
@@ -77,7 +77,7 @@ struct WindowEdgels {
   std::vector<std::pair<std::string, double>> stages_s;
   GateCounts dropped;
   PoseError pose_error;
-  EventDelay delay;  ///< that was taken out
+  StreamDelay delay;  ///< that was taken out
 };
 
 /// Seeds by horizontal strips of the view, which are processed in parallel.
@@ -120,8 +120,8 @@ class RayDepth : public DepthEstimator {
   /// RayDepthOptions::least_points, but no more than a share of the pixels.
   [[nodiscard]] std::size_t enough_points() const;
   /// By some of the seeds. `rays` of the window are made anew with it.
-  [[nodiscard]] EventDelay find_delay(const ViewWindow& window, const SeedStrips& strips,
-                                      EventRays& rays) const;
+  [[nodiscard]] StreamDelay find_delay(const ViewWindow& window, const SeedStrips& strips,
+                                       EventRays& rays) const;
   void refine_seeds(const EventRays& rays, const SeedStrips& strips, WindowEdgels& found) const;
   void propagate(const EventRays& rays, const SeedStrips& strips, WindowEdgels& found) const;
   void assume(const EventRays& rays, WindowEdgels& found) const;

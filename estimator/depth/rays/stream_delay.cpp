@@ -1,4 +1,4 @@
-#include "estimator/depth/rays/event_delay.h"
+#include "estimator/depth/rays/stream_delay.h"
 
 #include <algorithm>
 #include <cmath>
@@ -66,15 +66,15 @@ Evidence evidence_of(const FittedEdgel& edgel, const EventRays& rays,
 
 }  // namespace
 
-EventDelay EventDelay::with_prior() const {
+StreamDelay StreamDelay::with_prior() const {
   constexpr double kSigma_s = 1e-3;
   if (!(sigma_s < kSigma_s)) return {0, kSigma_s};
   const double share = 1 / (1 + std::pow(sigma_s / kSigma_s, 2));
   return {share * delay_s, std::sqrt(share) * sigma_s};
 }
 
-EventDelay estimate_delay(const EventRays& rays, std::span<const Event> window_events,
-                          const std::vector<FittedEdgel>& edgels, const EdgelEvents& events) {
+StreamDelay estimate_delay(const EventRays& rays, std::span<const Event> window_events,
+                           const std::vector<FittedEdgel>& edgels, const EdgelEvents& events) {
   Evidence all;
   for (const FittedEdgel& edgel : edgels) {
     const Evidence one = evidence_of(edgel, rays, window_events, events);

@@ -1,4 +1,4 @@
-#include "estimator/depth/rays/event_delay.h"
+#include "estimator/depth/rays/stream_delay.h"
 
 #include <gtest/gtest.h>
 
@@ -72,7 +72,7 @@ Events shifted(const Motion& motion, TimeNs delay_ns) {
   return events;
 }
 
-TEST(EventDelay, IsFound) {
+TEST(StreamDelay, IsFound) {
   for (const TimeNs delay_ns : {TimeNs{2'000'000}, TimeNs{800'000}, TimeNs{-1'500'000}}) {
     const Events events = shifted(shake, delay_ns);
     EXPECT_EQ(depth_of(events, shake, false).event_delay_s, 0);
@@ -81,7 +81,7 @@ TEST(EventDelay, IsFound) {
   }
 }
 
-TEST(EventDelay, IsTakenOutOfTheDepth) {
+TEST(StreamDelay, IsTakenOutOfTheDepth) {
   for (const TimeNs delay_ns : {TimeNs{2'000'000}, TimeNs{-1'500'000}}) {
     const Events events = shifted(slow_down, delay_ns);
     const DepthResult with = depth_of(events, slow_down, true);
@@ -91,32 +91,32 @@ TEST(EventDelay, IsTakenOutOfTheDepth) {
   }
 }
 
-TEST(EventDelay, IsNoneWhereEventsComeInTime) {
+TEST(StreamDelay, IsNoneWhereEventsComeInTime) {
   const DepthResult result = depth_of(events_of(shake, 0), shake, true);
   EXPECT_LT(std::abs(result.event_delay_s), 5e-5);
 }
 
 // A delay is then like another place of the edge.
-TEST(EventDelay, IsNotToldByUniformMotion) {
+TEST(StreamDelay, IsNotToldByUniformMotion) {
   const Motion slide = [](double t_s) {
     return Rigid3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0.9 * t_s, 0.25 * t_s, 0));
   };
   EXPECT_EQ(depth_of(events_of(slide, 500'000), slide, true).event_delay_s, 0);
 }
 
-TEST(EventDelay, IsWeighedAgainstWhatIsKnownBeforehand) {
-  EXPECT_NEAR((EventDelay{8e-4, 1e-5}).with_prior().delay_s, 8e-4, 1e-6);
-  const EventDelay half = EventDelay{8e-4, 0.999e-3}.with_prior();
+TEST(StreamDelay, IsWeighedAgainstWhatIsKnownBeforehand) {
+  EXPECT_NEAR((StreamDelay{8e-4, 1e-5}).with_prior().delay_s, 8e-4, 1e-6);
+  const StreamDelay half = StreamDelay{8e-4, 0.999e-3}.with_prior();
   EXPECT_NEAR(half.delay_s, 4e-4, 1e-6);
   EXPECT_NEAR(half.sigma_s, 1e-3 / std::sqrt(2.0), 1e-6);
-  EXPECT_EQ((EventDelay{8e-3, 2e-3}).with_prior().delay_s, 0);
+  EXPECT_EQ((StreamDelay{8e-3, 2e-3}).with_prior().delay_s, 0);
 }
 
-TEST(EventDelay, OfNoEdgelsIsNotKnown) {
+TEST(StreamDelay, OfNoEdgelsIsNotKnown) {
   const Trajectory poses = trajectory_of(shake, kShakeEnd_s);
   const UndistortionTable undistortion(shaken_world().camera());
   const EventRays rays({{}, &poses, kShakeMiddle_s}, shaken_world().camera(), undistortion, 24);
-  const EventDelay none = estimate_delay(rays, {}, {}, {});
+  const StreamDelay none = estimate_delay(rays, {}, {}, {});
   EXPECT_EQ(none.delay_s, 0);
   EXPECT_TRUE(std::isinf(none.sigma_s));
 }
