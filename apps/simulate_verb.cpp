@@ -8,6 +8,7 @@
 #include "core/config/config.h"
 #include "core/error.h"
 #include "simulator/dataset_cache.h"
+#include "simulator/scene/describe_mesh.h"
 #include "simulator/simulate.h"
 
 namespace saccade {
@@ -69,6 +70,10 @@ void simulate_cached(const SimulateVerbOptions& options, const SimulationConfig&
 
 void simulate_config(const SimulateVerbOptions& options) {
   options.common.apply();
+  if (is_mesh_name(options.config) && std::filesystem::is_regular_file(options.config))
+    throw InputError(options.config,
+                     "is a mesh; a configuration that shows it is wanted, for which saccade info "
+                     "suggests an entry");
   const auto config = config::read<SimulationConfig>(options.common.load(options.config));
   if (options.common.print_config) {
     fmt::print("{}", config::print_documented(config));

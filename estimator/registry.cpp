@@ -1,6 +1,7 @@
 #include "estimator/registry.h"
 
 #include "core/config/config.h"
+#include "core/config/suggest.h"
 #include "core/error.h"
 #include "estimator/depth/depth_config.h"
 #include "estimator/depth/depth_module.h"
@@ -89,12 +90,13 @@ constexpr Module kModules[] = {
 std::span<const Module> modules() { return kModules; }
 
 const Module& find_module(const std::string& name) {
-  std::string known;
+  std::vector<std::string> known;
   for (const Module& module : modules()) {
     if (name == module.name) return module;
-    known += known.empty() ? module.name : std::string(", ") + module.name;
+    known.emplace_back(module.name);
   }
-  throw InputError("MODULE", "there is no estimator '" + name + "'; there are: " + known);
+  throw InputError("MODULE", "there is no estimator '" + name + "'; " +
+                                 config::suggestion(name, known, "estimators"));
 }
 
 RunSummary run_module(const std::string& name, const RunRequest& request) {

@@ -35,12 +35,20 @@ std::vector<PoseRow> read_pose_rows(const std::filesystem::path& file) {
 
 }  // namespace
 
+std::filesystem::path run_record_of(const std::filesystem::path& folder) {
+  std::filesystem::path file = folder / "run.yaml";
+  if (std::filesystem::exists(file)) return file;
+  if (!std::filesystem::exists(folder)) throw InputError(folder.string(), "no such run folder");
+  if (std::filesystem::exists(folder / "dataset.yaml"))
+    throw InputError(folder.string(), "is a dataset, not a run: saccade run MODULE --data " +
+                                          folder.string() + " makes one");
+  throw InputError(folder.string(), "is no run: it holds no run.yaml");
+}
+
 RunFolder RunFolder::open(const std::filesystem::path& folder) {
   RunFolder run;
   run.folder = folder;
-  if (!std::filesystem::exists(folder / "run.yaml"))
-    throw InputError(folder.string(), "is no run: it holds no run.yaml");
-  run.record = read_run_record(folder / "run.yaml");
+  run.record = read_run_record(run_record_of(folder));
   if (const auto file = folder / "trajectory.txt"; std::filesystem::exists(file))
     run.trajectory = read_estimate(file);
   if (const auto file = folder / "poses.csv"; std::filesystem::exists(file))

@@ -27,6 +27,9 @@ struct PoseRow {
   double probability = 0;  ///< that the pose is right
 };
 
+/// run.yaml of a run folder. Throws InputError where there is none, and says what stands there instead.
+[[nodiscard]] std::filesystem::path run_record_of(const std::filesystem::path& folder);
+
 /// A run folder, by whatever estimator. Opening reads run.yaml and, where they exist,
 /// trajectory.txt, poses.csv, timing.json and metrics.json.
 struct RunFolder {

@@ -89,6 +89,9 @@ fs::path find_configuration(const fs::path& stated) {
 }
 
 std::string nearest_shipped(const fs::path& stated) {
+  if (shipped_folder().empty())
+    return "; the configurations that saccade is shipped with were not found above its program: it "
+           "wants share/saccade there";
   const std::string name = short_name(stated);
   std::vector<std::string> names = shipped_configurations();
   if (name.find('/') == std::string::npos)

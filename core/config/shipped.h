@@ -26,7 +26,7 @@ namespace saccade::config {
 [[nodiscard]] std::filesystem::path find_configuration(const std::filesystem::path& stated);
 
 /// "; did you mean 'walls'?", with the shipped configuration nearest to a file that does not exist;
-/// empty where none is near.
+/// empty where none is near. Where the shipped folder is not found it says so.
 [[nodiscard]] std::string nearest_shipped(const std::filesystem::path& stated);
 
 }  // namespace saccade::config

@@ -13,6 +13,7 @@
 #include "core/io/files/sha256.h"
 #include "core/io/run/run_record.h"
 #include "eval/configuration_name.h"
+#include "eval/run_folder.h"
 
 namespace saccade {
 namespace {
@@ -76,8 +77,7 @@ std::span<const ResultColumn> result_columns() {
 }
 
 ResultRow read_result(const fs::path& run_folder) {
-  const fs::path file = run_folder / "run.yaml";
-  if (!fs::exists(file)) throw InputError(run_folder.string(), "is no run: it holds no run.yaml");
+  const fs::path file = run_record_of(run_folder);
   const RunRecord record = read_run_record(file);
   ResultRow row;
   row.run = folder_name(run_folder);

@@ -10,6 +10,7 @@ from typing import Any, Callable, Iterator, Mapping, Optional, Union
 
 import numpy as np
 
+from saccade._native import InputError
 from saccade.dataset import Dataset
 from saccade.events import Events
 from saccade.runs import Run
@@ -102,6 +103,8 @@ def trajectory(paths: Union[Run, np.ndarray, Mapping[str, Any]], truth: Union[Da
     truth : Dataset or array, optional
     """
     ax = _axes(ax, COLUMN, 2.6)
+    if len(axes) != 2 or not set(axes) <= set("xyz"):
+        raise InputError(f"axes: must be two of x, y and z, such as 'xy', not '{axes}'")
     u, v = (1 + "xyz".index(name) for name in axes)
     if truth is not None:
         rows = _rows(truth)

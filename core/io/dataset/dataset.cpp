@@ -119,9 +119,14 @@ void expect_size(const ImageF& image, const PinholeCamera& camera, const fs::pat
 }  // namespace
 
 Dataset Dataset::open(const fs::path& folder) {
-  if (!fs::is_directory(folder))
+  if (!fs::is_directory(folder)) {
+    if (!fs::exists(folder)) throw InputError(folder.string(), "no such dataset folder");
     throw InputError(folder.string(),
-                     fs::exists(folder) ? "is no folder" : "no such dataset folder");
+                     folder.extension() == ".yaml"
+                         ? "is a file; if it configures a simulation, saccade simulate makes a "
+                           "dataset of it"
+                         : "is no folder");
+  }
   Dataset dataset;
   dataset.folder_ = folder;
   dataset.events_file_ = find_events(folder);
