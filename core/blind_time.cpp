@@ -40,7 +40,10 @@ FloorFit fit_fraction(std::span<const double> gaps, double floor, double rise) {
     double responsible = 0;
     for (const double d : density)
       responsible += fraction * uniform / (fraction * uniform + (1 - fraction) * d);
+    const double before = fraction;
     fraction = std::clamp(responsible / static_cast<double>(gaps.size()), 1e-4, 0.999);
+    constexpr double kConverged = 1e-3;  ///< of the fraction
+    if (std::abs(fraction - before) < kConverged * fraction) break;
   }
   double value = 0;
   for (const double d : density) value += std::log(fraction * uniform + (1 - fraction) * d);
@@ -204,7 +207,7 @@ BlindTime blind_time(std::span<const double> ascending_us) {
 
 double find_blind_time_us(std::span<const Event> events, SensorSize size) {
   // The floor is seen in a few thousand gaps.
-  constexpr std::size_t kEnoughEvents = 500'000;
+  constexpr std::size_t kEnoughEvents = 250'000;
   const auto step = static_cast<int>(events.size() / kEnoughEvents) + 1;
   Events some;
   for (const Event& event : events)

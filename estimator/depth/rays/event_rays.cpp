@@ -133,6 +133,25 @@ EventRays::EventRays(const ViewWindow& window, const PinholeCamera& camera,
   });
 }
 
+void EventRays::take_out(double later_s, const ViewWindow& window, const PinholeCamera& camera) {
+  const int slices = slice_count();
+  slices_.clear();
+  make_slices(window, camera, slices);
+  parallel_for(2 * static_cast<std::size_t>(slices), [&](std::size_t layer) {
+    // A gradient is p times the rate.
+    const bool is_on = layer % 2 == 1;
+    const auto step_s = static_cast<float>(is_on ? later_s : -later_s);
+    const std::size_t first = index_of(static_cast<int>(layer / 2), is_on, 0, 0);
+    const std::size_t cells = static_cast<std::size_t>(rows_) * static_cast<std::size_t>(columns_);
+    for (std::size_t i = offsets_[first]; i < offsets_[first + cells]; ++i) {
+      line[i].ax -= step_s * gradient[i].qax;
+      line[i].ay -= step_s * gradient[i].qay;
+      line[i].bx -= step_s * gradient[i].qbx;
+      line[i].by -= step_s * gradient[i].qby;
+    }
+  });
+}
+
 void EventRays::make_slices(const ViewWindow& window, const PinholeCamera& camera, int count) {
   start_ns_ = window.events.front().t_ns;
   slice_ns_ = (window.events.back().t_ns - start_ns_) / count + 1;

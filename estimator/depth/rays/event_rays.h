@@ -46,6 +46,10 @@ class EventRays {
   EventRays(const ViewWindow& window, const PinholeCamera& camera,
             const UndistortionTable& undistortion, int slices);
 
+  /// For events that come later by `later_s` than they were taken to: the rays follow their rates, and what is off is a
+  /// half of the acceleration times its square, 0.01 px of a fast hand after 1 ms. `window`, with the delay from now on.
+  void take_out(double later_s, const ViewWindow& window, const PinholeCamera& camera);
+
   /// A part of the window's time with the pose in its middle.
   struct TimeSlice {
     Eigen::Matrix3f pixel_from_reference;  ///< K R^T K^-1, homogeneous pixels

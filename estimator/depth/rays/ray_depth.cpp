@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <tuple>
 
 #include "core/image.h"
@@ -15,8 +16,8 @@ namespace {
 
 constexpr int kTile_px = 16;
 constexpr int kStripTiles = 3;
-/// A third of them become edgels, and hundreds of these tell the delay of events to microseconds.
-constexpr std::size_t kDelaySeeds = 1500;
+/// Hundreds of edgels tell the delay of events to microseconds.
+constexpr std::size_t kDelaySeeds = 1000;
 
 // Seeds that are refined on their own; weaker ones, those with less parallax and those off the best
 // plane of their pixel need neighbours that predict their depth.
@@ -55,15 +56,30 @@ SeedStrips sorted_into_strips(const std::vector<EdgelSeed>& seeds, int height) {
   return sorted;
 }
 
-/// Of each strip an equal share, about `count` in all.
-SeedStrips some_of(const SeedStrips& strips, std::size_t count) {
+/// The gate that keeps a seed from being refined on its own; nullptr: none.
+std::size_t GateCounts::*gate_of(const EdgelSeed& seed, double opening) {
+  const float least_strength = opening > 1 ? 1 : kMinStrength;
+  if (seed.vote_ratio < kMinVoteRatio || seed.strength < least_strength) return &GateCounts::weak;
+  if (seed.parallax_px < kMinParallax_px / static_cast<float>(opening)) return &GateCounts::still;
+  return nullptr;
+}
+
+/// Of those that pass the gates about `count`, of each strip an equal share.
+SeedStrips some_of(const SeedStrips& strips, double opening, std::size_t count) {
+  SeedStrips passing(strips.size());
   std::size_t all = 0;
-  for (const auto& strip : strips) all += strip.size();
+  for (std::size_t k = 0; k < strips.size(); ++k) {
+    std::ranges::copy_if(strips[k], std::back_inserter(passing[k]),
+                         [&](const EdgelSeed& seed) { return gate_of(seed, opening) == nullptr; });
+    all += passing[k].size();
+  }
   const std::size_t step = std::max<std::size_t>(1, all / count);
-  SeedStrips some(strips.size());
-  for (std::size_t k = 0; k < strips.size(); ++k)
-    for (std::size_t i = 0; i < strips[k].size(); i += step) some[k].push_back(strips[k][i]);
-  return some;
+  for (auto& strip : passing) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < strip.size(); i += step) strip[kept++] = strip[i];
+    strip.resize(kept);
+  }
+  return passing;
 }
 
 /// Appends the edgels of the strips, without those that an earlier strip found beyond its border.
@@ -244,7 +260,7 @@ StreamDelay RayDepth::find_delay(const ViewWindow& window, const SeedStrips& str
   constexpr int kRounds = 3;
   // Moves an edge by a hundredth of a pixel at 500 px/s.
   constexpr double kNoChange_s = 2e-5;
-  const SeedStrips some = some_of(strips, kDelaySeeds);
+  const SeedStrips some = some_of(strips, options_.gate_opening, kDelaySeeds);
   ViewWindow delayed = window;
   StreamDelay delay;
   for (int round = 0; round < kRounds; ++round) {
@@ -256,24 +272,20 @@ StreamDelay RayDepth::find_delay(const ViewWindow& window, const SeedStrips& str
     if (std::abs(change_s) < kNoChange_s) break;
     delay = next;
     delayed.event_delay_s = delay.delay_s;
-    rays = EventRays(delayed, camera_, undistortion_, RayDepthOptions::kTimeSlices);
+    rays.take_out(change_s, delayed, camera_);
   }
   return delay;
 }
 
 void RayDepth::refine_seeds(const EventRays& rays, const SeedStrips& strips,
                             WindowEdgels& found) const {
-  const float least_parallax_px = kMinParallax_px / static_cast<float>(options_.gate_opening);
-  const float least_strength = options_.gate_opening > 1 ? 1 : kMinStrength;
   std::vector<WindowEdgels> fitted(strips.size());
   parallel_for(strips.size(), [&](std::size_t k) {
     EdgelRefiner refiner(rays, options_.refiner, limits_, camera_);
     GateCounts& dropped = fitted[k].dropped;
     for (const EdgelSeed& seed : strips[k]) {
-      if (seed.vote_ratio < kMinVoteRatio || seed.strength < least_strength)
-        ++dropped.weak;
-      else if (seed.parallax_px < least_parallax_px)
-        ++dropped.still;
+      if (std::size_t GateCounts::*const gate = gate_of(seed, options_.gate_opening))
+        ++(dropped.*gate);
       else if (const auto edge = refiner.refine(seed, fitted[k].events))
         fitted[k].edges.push_back(*edge);
     }

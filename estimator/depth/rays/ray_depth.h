@@ -119,7 +119,7 @@ class RayDepth : public DepthEstimator {
 
   /// RayDepthOptions::least_points, but no more than a share of the pixels.
   [[nodiscard]] std::size_t enough_points() const;
-  /// By some of the seeds. `rays` of the window are made anew with it.
+  /// By some of the seeds; it is taken out of the window's `rays`.
   [[nodiscard]] StreamDelay find_delay(const ViewWindow& window, const SeedStrips& strips,
                                        EventRays& rays) const;
   void refine_seeds(const EventRays& rays, const SeedStrips& strips, WindowEdgels& found) const;

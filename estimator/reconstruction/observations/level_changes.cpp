@@ -43,7 +43,11 @@ void LevelChanges::weigh(std::span<const Event> events, SensorSize size) {
   if (blind_ns_ == 0) return;
   Image<Pixel> pixels(size.width, size.height);
   double seen = 0, rises = 0, falls = 0, pairs = 0, agreeing = 0;
+  // Some pixels tell it as well as all.
+  constexpr std::size_t kEnoughEvents = 250'000;
+  const auto step = static_cast<int>(events.size() / kEnoughEvents) + 1;
   for (const Event& event : events) {
+    if ((event.x + event.y) % step != 0) continue;
     Pixel& pixel = pixels(event.x, event.y);
     if (pixel.polarity != 0) {
       // Steep slopes count as much as their blind changes.

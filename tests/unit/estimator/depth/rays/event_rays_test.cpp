@@ -83,6 +83,27 @@ TEST_F(EventRaysTest, TheRiseIsTheMotionOfTheFootprintTimesPolarity) {
   }
 }
 
+TEST_F(EventRaysTest, ADelayIsTakenOutAsIfItHadBeenKnown) {
+  ViewWindow delayed{events_, &trajectory_, kReference_s};
+  delayed.event_delay_s = 1e-3;
+  const EventRays known(delayed, kCamera, undistortion_, 8);
+  EventRays taken_out = rays_;
+  taken_out.take_out(1e-3, delayed, kCamera);
+  double moved_px = 0;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    // Before the first pose there is none.
+    if (events_[known.source[i]].t_ns < 1'000'000) continue;
+    EXPECT_NEAR(taken_out.line[i].ax, known.line[i].ax, 2e-3);
+    EXPECT_NEAR(taken_out.line[i].by, known.line[i].by, 2e-3);
+    moved_px =
+        std::max(moved_px, std::abs(static_cast<double>(known.line[i].ax - rays_.line[i].ax)));
+  }
+  EXPECT_GT(moved_px, 0.05);
+  for (int k = 0; k < 8; ++k)
+    EXPECT_TRUE(taken_out.slices()[static_cast<std::size_t>(k)].centre.isApprox(
+        known.slices()[static_cast<std::size_t>(k)].centre));
+}
+
 TEST_F(EventRaysTest, EveryEventIsInTheCellWhereItsPointIsSeen) {
   std::size_t found = 0;
   for (const Event& event : events_) {
