@@ -9,6 +9,8 @@
 #include "apps/option_checks.h"
 #include "apps/verbs.h"
 #include "core/error.h"
+#include "core/io/run/run_record.h"
+#include "core/process/progress.h"
 #include "eval/evaluate.h"
 #include "eval/evaluate_events.h"
 #include "eval/store/result_store.h"
@@ -86,6 +88,18 @@ void check_comparison(const EvalOptions& options) {
     throw InputError("--data", "--events are scored against a recording: --against RECORDING");
 }
 
+/// A run that was given no poses and was not aligned with an inertial sensor has a world of its own, and metres.
+void say_whose_frame(const std::filesystem::path& run) {
+  const RunRecord record = read_run_record(run / "run.yaml");
+  if (record.module != "odometry" || !record.method_class) return;
+  if (!record.method_class->inputs.contains(MethodInput::kStart) &&
+      !std::filesystem::exists(run / "inertial.yaml"))
+    show_notice(run.string() +
+                ": its poses have a frame and a scale of their own, since it was given none at the "
+                "start: of the "
+                "errors, those of trajectory.sim3 say how good it is");
+}
+
 void evaluate(const EvalOptions& options) {
   options.common.apply();
   const int named =
@@ -105,6 +119,7 @@ void evaluate(const EvalOptions& options) {
   const Metrics metrics = evaluate_run(options.run, options.evaluate);
   keep_result(options.run);
   show(options, metrics, options.run.string());
+  say_whose_frame(options.run);
 }
 
 }  // namespace
