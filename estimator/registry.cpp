@@ -95,8 +95,11 @@ const Module& find_module(const std::string& name) {
     if (name == module.name) return module;
     known.emplace_back(module.name);
   }
-  throw InputError("MODULE", "there is no estimator '" + name + "'; " +
-                                 config::suggestion(name, known, "estimators"));
+  const auto meant = config::nearest(name, known);
+  throw InputError("MODULE",
+                   "there is no estimator '" + name + "'; " +
+                       (meant ? "did you mean '" + *meant + "'? There are: " : "there are: ") +
+                       config::joined(known));
 }
 
 RunSummary run_module(const std::string& name, const RunRequest& request) {

@@ -34,6 +34,8 @@ TEST(Registry, UnknownNameListsTheModules) {
     EXPECT_THAT(error, HasSubstr("'" + name + "'"));
     for (const Module& module : modules()) EXPECT_THAT(error, HasSubstr(module.name));
   }
+  EXPECT_THAT(error_of([] { return find_module("trak").name; }),
+              HasSubstr("did you mean 'track'?"));
 }
 
 class EveryModule : public ::testing::TestWithParam<std::string> {
