@@ -38,6 +38,7 @@ int exit_code_after(int signal, const fs::path& folder) {
   const pid_t child = fork();
   if (child == 0) {
     std::freopen("/dev/null", "w", stderr);
+    std::signal(signal, SIG_DFL);  // a shell ignores SIGINT for what it runs in the background
     end_on_interruption();
     const AtomicFile file(folder / "result.txt");
     std::ofstream(file.path()) << "a half";
