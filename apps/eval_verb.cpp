@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -88,16 +89,20 @@ void check_comparison(const EvalOptions& options) {
     throw InputError("--data", "--events are scored against a recording: --against RECORDING");
 }
 
-/// A run that was given no poses and was not aligned with an inertial sensor has a world of its own, and metres.
-void say_whose_frame(const std::filesystem::path& run) {
+/// A run that was given no poses and was not brought into metres by an inertial sensor has a world of its own.
+void say_whose_frame(const std::filesystem::path& run, const Metrics& metrics) {
   const RunRecord record = read_run_record(run / "run.yaml");
-  if (record.module != "odometry" || !record.method_class) return;
-  if (!record.method_class->inputs.contains(MethodInput::kStart) &&
-      !std::filesystem::exists(run / "inertial.yaml"))
-    show_notice(run.string() +
-                ": its poses have a frame and a scale of their own, since it was given none at the "
-                "start: of the "
-                "errors, those of trajectory.sim3 say how good it is");
+  if (record.module != "odometry" || !record.method_class ||
+      record.method_class->inputs.contains(MethodInput::kStart) ||
+      !metrics.values().contains("trajectory.sim3.ate_rmse_m"))
+    return;
+  std::ifstream inertial(run / "inertial.yaml");
+  for (std::string line; std::getline(inertial, line);)
+    if (line == "applied: true") return;
+  show_notice(run.string() +
+              ": its poses have a frame and a scale of their own, since it was given none at the "
+              "start: of the "
+              "errors, those of trajectory.sim3 say how good it is");
 }
 
 void evaluate(const EvalOptions& options) {
@@ -119,7 +124,7 @@ void evaluate(const EvalOptions& options) {
   const Metrics metrics = evaluate_run(options.run, options.evaluate);
   keep_result(options.run);
   show(options, metrics, options.run.string());
-  say_whose_frame(options.run);
+  say_whose_frame(options.run, metrics);
 }
 
 }  // namespace

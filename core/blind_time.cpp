@@ -211,7 +211,7 @@ double find_blind_time_us(std::span<const Event> events, SensorSize size) {
   const auto step = static_cast<int>(events.size() / kEnoughEvents) + 1;
   Events some;
   for (const Event& event : events)
-    if ((event.x + event.y) % step == 0) some.push_back(event);
+    if ((event.y * size.width + event.x) % step == 0) some.push_back(event);
   if (!has_constant_floor(some, size)) return 0;
   return blind_time(event_gaps_us(some, size)).us.value_or(0);
 }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/blind_time.h"
 #include "core/config/config.h"
 #include "core/error.h"
 #include "core/io/images/image_file.h"
@@ -142,6 +143,10 @@ RunSummary run_mosaic(const RunRequest& request) {
   const ContrastThresholds thresholds =
       contrast_thresholds(config.contrast_on, config.contrast_off, dataset, source.events);
   if (thresholds.is_found) adapt_to_found_thresholds(config.mosaic.equations);
+  std::optional<double>& blind_time_us = config.mosaic.observations().blind_time_us;
+  if (!blind_time_us)
+    blind_time_us =
+        find_blind_time_us(source.events, {dataset.camera().width, dataset.camera().height});
   const RunRecord::Window window = window_of(request, seconds_from_ns(source.events.front().t_ns),
                                              seconds_from_ns(source.events.back().t_ns));
   MosaicRun run;

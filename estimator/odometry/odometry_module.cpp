@@ -51,9 +51,12 @@ void say_how_far(const Trajectory& start, const Dataset& dataset, const PinholeC
   constexpr double kPoor_px = 4;
   const std::optional<double> depth_m = dataset.facts().mean_depth_m;
   if (!depth_m) return;
-  const Eigen::Vector3d moved_m = start.poses().back().world_from_camera.translation() -
-                                  start.poses().front().world_from_camera.translation();
-  const double moved_px = camera.fx * moved_m.norm() / *depth_m;
+  double moved_m = 0;
+  for (const StampedPose& pose : start.poses())
+    moved_m = std::max(moved_m, (pose.world_from_camera.translation() -
+                                 start.poses().front().world_from_camera.translation())
+                                    .norm());
+  const double moved_px = camera.fx * moved_m / *depth_m;
   if (moved_px < kPoor_px)
     show_notice(fmt::format(
         "the given poses of the first {:.3g} s move the camera by {:.2g} px of the scene's mean "

@@ -18,6 +18,7 @@ EdgeTrackerOptions tracking_by_keyframes(double event_map_ratio) {
 /// their number more than by their precision.
 DepthConfig depth_of_keyframes() {
   DepthConfig depth;
+  depth.rays.find_delay = false;  // the poses are of the same events
   depth.method = DepthConfig::Method::kRays;
   depth.limits = {.near_m = 0.3, .far_m = 50};
   depth.rays.refiner.max_sigma = 0.03;

@@ -106,9 +106,9 @@ std::string played_by(const Model& model, const ModelAnimation& animation, const
     if (camera.node >= 0 && moved[static_cast<std::size_t>(camera.node)])
       return fmt::format(
           "; it moves the camera '{}': trajectory: {{source: model_camera, model: '{}', camera: "
-          "'{}', model_up: {}}}",
-          camera.name, file.string(), camera.name, is_y_up(file) ? "y" : "z");
-  return fmt::format("; `animation: '{}'` in the entry below plays it", animation.name);
+          "'{}', animation: '{}', model_up: {}}}",
+          camera.name, file.string(), camera.name, animation.name, is_y_up(file) ? "y" : "z");
+  return fmt::format("; `animation: {{name: '{}'}}` in the entry below plays it", animation.name);
 }
 
 /// Animations and cameras.

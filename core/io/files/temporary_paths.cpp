@@ -39,6 +39,7 @@ void remove_quietly(const fs::path& path) {
 void remove_by_program(const std::vector<const char*>& words) {
   const pid_t child = ::_Fork();
   if (child == 0) {
+    ::setpgid(0, 0);  // out of reach of another Ctrl-C
     ::execv("/bin/rm", const_cast<char* const*>(words.data()));
     ::_exit(1);
   }
@@ -63,8 +64,9 @@ void remove_temporary_paths() {
   PathRegistry& registry = path_registry();
   registry.mutex.lock();  // for good
   for (const fs::path& path : registry.paths) remove_quietly(path);
-  // What a thread was just about to write stands there again; the words are made while the heap may be used.
-  std::vector<const char*> words = {"rm", "-rf", "--"};
+  // What a thread was just about to write stands there again; the words are made while the heap may be used, and never
+  // given back, since then it may not.
+  auto& words = *new std::vector<const char*>{"rm", "-rf", "--"};
   for (const fs::path& path : registry.paths) words.push_back(path.c_str());
   words.push_back(nullptr);
   hold_other_threads();

@@ -64,7 +64,7 @@ std::size_t GateCounts::*gate_of(const EdgelSeed& seed, double opening) {
   return nullptr;
 }
 
-/// Of those that pass the gates about `count`, of each strip an equal share.
+/// Of those that pass the gates `count` to twice as many where there are so many, of each strip a share by its number.
 SeedStrips some_of(const SeedStrips& strips, double opening, std::size_t count) {
   SeedStrips passing(strips.size());
   std::size_t all = 0;
@@ -260,6 +260,8 @@ StreamDelay RayDepth::find_delay(const ViewWindow& window, const SeedStrips& str
   constexpr int kRounds = 3;
   // Moves an edge by a hundredth of a pixel at 500 px/s.
   constexpr double kNoChange_s = 2e-5;
+  // Beyond, rays do not follow their rates.
+  constexpr double kLinear_s = 1e-3;
   const SeedStrips some = some_of(strips, options_.gate_opening, kDelaySeeds);
   ViewWindow delayed = window;
   StreamDelay delay;
@@ -272,7 +274,10 @@ StreamDelay RayDepth::find_delay(const ViewWindow& window, const SeedStrips& str
     if (std::abs(change_s) < kNoChange_s) break;
     delay = next;
     delayed.event_delay_s = delay.delay_s;
-    rays.take_out(change_s, delayed, camera_);
+    if (std::abs(delay.delay_s) < kLinear_s)
+      rays.take_out(change_s, delayed, camera_);
+    else
+      rays = EventRays(delayed, camera_, undistortion_, RayDepthOptions::kTimeSlices);
   }
   return delay;
 }

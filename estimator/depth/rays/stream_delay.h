@@ -16,7 +16,7 @@ struct StreamDelay {
   double sigma_s = std::numeric_limits<double>::infinity();  ///< standard deviation
 
   /// With what is known beforehand: sensors, their drivers and clocks that were set by hand differ by about a
-  /// millisecond. 0 where that is known better than this.
+  /// millisecond. 0 where that is known better than this; a longer delay that is known well stays.
   [[nodiscard]] StreamDelay with_prior() const;
 };
 

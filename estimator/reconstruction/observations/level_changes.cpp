@@ -47,7 +47,7 @@ void LevelChanges::weigh(std::span<const Event> events, SensorSize size) {
   constexpr std::size_t kEnoughEvents = 250'000;
   const auto step = static_cast<int>(events.size() / kEnoughEvents) + 1;
   for (const Event& event : events) {
-    if ((event.x + event.y) % step != 0) continue;
+    if ((event.y * size.width + event.x) % step != 0) continue;
     Pixel& pixel = pixels(event.x, event.y);
     if (pixel.polarity != 0) {
       // Steep slopes count as much as their blind changes.

@@ -11,7 +11,7 @@ namespace saccade {
 /// By how much a pixel's log intensity has changed from one event of it to the next: by a threshold while it saw, and
 /// by something while it was blind after the first of them, since its reference is set when that ends. A ramp of
 /// slope s fires each T + C / s, so that the change is C + s T. The slope of the blind time is the mean of those before and
-/// after it, each C over the time for which the pixel saw.
+/// after it, each C over the time for which the pixel saw; before a pixel's first event it is not known and counts as 0.
 ///
 /// That holds where the texture is the same before and after, and two events in a row are of one polarity. Where they are as often
 /// of two, the slopes tell nothing: blind changes are weighed by the square of the correlation of successive polarities.

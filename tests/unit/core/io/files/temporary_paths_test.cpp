@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -76,7 +77,8 @@ TEST(TemporaryPaths, DoNotComeBackWhileASignalEndsTheProgram) {
       writers.emplace_back([path = fs::path(name) / std::to_string(i)] {
         const TemporaryPath temporary(path);
         for (;;) {
-          fs::create_directory(path);
+          std::error_code ignored;
+          fs::create_directory(path, ignored);
           std::ofstream(path / "file") << "a half";
         }
       });

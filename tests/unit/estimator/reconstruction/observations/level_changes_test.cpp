@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -87,13 +88,29 @@ TEST(LevelChanges, RisesAndFallsOfAWindowCancelOut) {
 }
 
 TEST(LevelChanges, AreThresholdsWherePolaritiesSayNothingOfTheSlope) {
-  // Texture that passes within the blind time: polarities in turn.
+  // Texture that passes within the blind time: polarities in turn, rises sooner than falls.
   Events events;
-  for (int i = 0; i < 100; ++i)
-    events.push_back({i * 600'000LL, 0, 0, static_cast<std::int8_t>(i % 2 == 0 ? 1 : -1)});
+  TimeNs t_ns = 0;
+  for (int i = 0; i < 100; ++i) {
+    const bool is_rise = i % 2 == 0;
+    t_ns += is_rise ? 550'000 : 900'000;
+    events.push_back({t_ns, 0, 0, static_cast<std::int8_t>(is_rise ? 1 : -1)});
+  }
   const std::vector<double> levels = levels_of(events, kBlind_s);
   for (std::size_t i = 0; i < levels.size(); ++i)
     EXPECT_NEAR(levels[i], i % 2 == 0 ? 0.2 : 0, 1e-5) << i;
+}
+
+TEST(LevelChanges, DoNotTakeAStepForASteepRamp) {
+  // Twenty events up and twenty down, each right after the blind time.
+  Events events;
+  for (int i = 0; i < 40; ++i)
+    events.push_back({i * 510'000LL, 0, 0, static_cast<std::int8_t>(i < 20 ? 1 : -1)});
+  const std::vector<double> levels = levels_of(events, kBlind_s);
+  const double highest = *std::max_element(levels.begin(), levels.end());
+  // A threshold and what half the blind time as seen makes of it: two more.
+  EXPECT_GT(highest, 20 * 0.2 * 2);
+  EXPECT_LT(highest, 20 * 0.2 * 3.2);
 }
 
 }  // namespace
