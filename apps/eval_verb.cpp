@@ -101,8 +101,7 @@ void say_whose_frame(const std::filesystem::path& run, const Metrics& metrics) {
     if (line == "applied: true") return;
   show_notice(run.string() +
               ": its poses have a frame and a scale of their own, since it was given none at the "
-              "start: of the "
-              "errors, those of trajectory.sim3 say how good it is");
+              "start: of the errors, those of trajectory.sim3 say how good it is");
 }
 
 void evaluate(const EvalOptions& options) {

@@ -70,6 +70,18 @@ std::vector<double> thinned(std::span<const double> gaps) {
   return some;
 }
 
+/// Calls use(event, gap_us) for every event but the first of its pixel.
+template <class Use>
+void for_each_gap(std::span<const Event> events, SensorSize size, const Use& use) {
+  constexpr TimeNs kNone = -1;
+  Image<TimeNs> last(size.width, size.height, kNone);
+  for (const Event& event : events) {
+    TimeNs& before = last(event.x, event.y);
+    if (before != kNone) use(event, static_cast<double>(event.t_ns - before) * 1e-3);
+    before = event.t_ns;
+  }
+}
+
 /// The gaps that end in one part of the time.
 struct GapSlice {
   std::size_t events = 0;
@@ -79,18 +91,16 @@ struct GapSlice {
 /// Equal parts of the time of the events. Without the first ones, which have gaps that began in them alone.
 std::vector<GapSlice> gap_slices(std::span<const Event> events, SensorSize size) {
   constexpr std::size_t kSlices = 24, kFirst = 2;
-  constexpr TimeNs kNone = -1;
   const TimeNs start_ns = events.front().t_ns;
   const TimeNs slice_ns = (events.back().t_ns - start_ns) / static_cast<TimeNs>(kSlices) + 1;
-  Image<TimeNs> last(size.width, size.height, kNone);
   std::vector<GapSlice> slices(kSlices);
-  for (const Event& event : events) {
-    GapSlice& slice = slices[static_cast<std::size_t>((event.t_ns - start_ns) / slice_ns)];
-    ++slice.events;
-    TimeNs& before = last(event.x, event.y);
-    if (before != kNone) slice.gaps_us.push_back(static_cast<double>(event.t_ns - before) * 1e-3);
-    before = event.t_ns;
-  }
+  const auto slice_of = [&](const Event& event) -> GapSlice& {
+    return slices[static_cast<std::size_t>((event.t_ns - start_ns) / slice_ns)];
+  };
+  for (const Event& event : events) ++slice_of(event).events;
+  for_each_gap(events, size, [&](const Event& event, double gap_us) {
+    slice_of(event).gaps_us.push_back(gap_us);
+  });
   slices.erase(slices.begin(), slices.begin() + kFirst);
   return slices;
 }
@@ -157,14 +167,8 @@ bool has_constant_floor(std::span<const Event> events, SensorSize size) {
 }  // namespace
 
 std::vector<double> event_gaps_us(std::span<const Event> events, SensorSize size) {
-  constexpr TimeNs kNone = -1;
-  Image<TimeNs> last(size.width, size.height, kNone);
   std::vector<double> gaps;
-  for (const Event& event : events) {
-    TimeNs& before = last(event.x, event.y);
-    if (before != kNone) gaps.push_back(static_cast<double>(event.t_ns - before) * 1e-3);
-    before = event.t_ns;
-  }
+  for_each_gap(events, size, [&](const Event&, double gap_us) { gaps.push_back(gap_us); });
   std::sort(gaps.begin(), gaps.end());
   return gaps;
 }

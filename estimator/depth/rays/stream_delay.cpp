@@ -19,6 +19,7 @@ constexpr double kLeastVariance_px2 = 1e-3;
 /// What the residuals of all edgels have in common for other reasons, such as pixels that had not fired before: no
 /// number of events lessens it. Worlds of ideal pixels, whose delay is 0, show a twentieth of it.
 constexpr double kCommonError_px = 0.005;
+
 /// What edgels say of the delay, their own unknowns marginalised; divided by the variance of their residuals.
 struct Evidence {
   double rate2 = 0;  ///< sum of w (n . x')^2, as far as own unknowns leave it
