@@ -123,5 +123,16 @@ TEST_F(ModelCamera, AreListedWithTheAnimations) {
                           HasSubstr("0 'move' of 3 s moves 1 nodes")));
 }
 
+TEST_F(ModelCamera, TheTrajectoryThatIsSuggestedIsOne) {
+  const std::string text = describe_mesh(write("set.gltf", film_set().text()));
+  const std::size_t begin = text.find("trajectory: {");
+  ASSERT_NE(begin, std::string::npos);
+  const std::string line = text.substr(begin, text.find('\n', begin) - begin);
+  EXPECT_THAT(line, AllOf(HasSubstr("camera: 'crane'"), HasSubstr("animation: 'move'")));
+  const Spline path = build_motion(config::read<MotionOptions>(
+      config::parse(line.substr(line.find('{')), "suggested.yaml", folder_)));
+  EXPECT_NEAR(path.end_s(), 3, 1e-6);
+}
+
 }  // namespace
 }  // namespace saccade

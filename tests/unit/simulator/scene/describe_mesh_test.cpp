@@ -18,6 +18,7 @@ TEST_F(DescribeMesh, SaysSizeTrianglesAndAnEntryThatStandsItUpright) {
   EXPECT_THAT(text, HasSubstr("[1, 1, 0] from [0, 0, 0] to [1, 1, 0]"));
   EXPECT_THAT(text, HasSubstr("2 triangles"));
   EXPECT_THAT(text, HasSubstr("square.obj', up: z}"));
+  EXPECT_THAT(text, HasSubstr("does not say which axis is up"));
   EXPECT_THAT(text, Not(HasSubstr("hardly metres")));
 }
 
