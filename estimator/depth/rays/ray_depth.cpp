@@ -158,7 +158,7 @@ DepthResult RayDepth::estimate(const ViewWindow& window) const {
   std::vector<std::pair<std::string, double>> stages_s;
   DepthResult result = with_open_gates<DepthResult>(
       [&](const RayDepth& opened) {
-        DepthResult found = opened.fuse(opened.find_edgels(window));
+        DepthResult found = opened.fuse(opened.find_delayed_edgels(window));
         // The time of all passes, whichever is taken.
         if (stages_s.empty())
           stages_s = found.stages_s;
@@ -180,6 +180,14 @@ std::size_t RayDepth::enough_points() const {
 }
 
 WindowEdgels RayDepth::find_edgels(const ViewWindow& window) const {
+  return find_edgels(window, false);
+}
+
+WindowEdgels RayDepth::find_delayed_edgels(const ViewWindow& window) const {
+  return find_edgels(window, options_.find_delay);
+}
+
+WindowEdgels RayDepth::find_edgels(const ViewWindow& window, bool may_be_delayed) const {
   double rays_s = 0, seeds_s = 0, regression_s = 0, assignment_s = 0, propagation_s = 0;
   const auto timed = [](double& seconds, const auto& stage) {
     const ScopedTimer clock(seconds);
@@ -204,7 +212,7 @@ WindowEdgels RayDepth::find_edgels(const ViewWindow& window) const {
     for (const EdgelSeed& seed : seeds) found.seeds.push_back(seed.pixel);
     return sorted_into_strips(seeds, camera_.height);
   });
-  if (options_.find_delay) {
+  if (may_be_delayed) {
     found.delay = timed(regression_s, [&] { return find_delay(window, strips, rays); });
   }
   timed(regression_s, [&] { refine_seeds(rays, strips, found); });

@@ -109,8 +109,12 @@ class RayDepth : public DepthEstimator {
     return best;
   }
 
-  /// The two halves of estimate(), for callers that adjust the edgels in between.
+  /// The first half of estimate(), for callers that adjust the edgels before the second, fuse().
+  /// The events are as late behind the poses as the window says: those who adjust the poses by them
+  /// must not find a delay, which looks like the poses' own error.
   [[nodiscard]] WindowEdgels find_edgels(const ViewWindow& window) const;
+  /// The same of poses from elsewhere, which the events may come later than (`find_delay`).
+  [[nodiscard]] WindowEdgels find_delayed_edgels(const ViewWindow& window) const;
   [[nodiscard]] DepthResult fuse(const WindowEdgels& found) const;
 
  private:
@@ -119,6 +123,7 @@ class RayDepth : public DepthEstimator {
 
   /// RayDepthOptions::least_points, but no more than a share of the pixels.
   [[nodiscard]] std::size_t enough_points() const;
+  [[nodiscard]] WindowEdgels find_edgels(const ViewWindow& window, bool may_be_delayed) const;
   /// By some of the seeds; it is taken out of the window's `rays`.
   [[nodiscard]] StreamDelay find_delay(const ViewWindow& window, const SeedStrips& strips,
                                        EventRays& rays) const;

@@ -27,7 +27,6 @@ Trajectory scaled(const Trajectory& path, double scale) {
 
 PathRefinementOptions start_refinement() {
   PathRefinementOptions options;
-  options.rays.find_delay = false;  // the path is of the same events
   options.adjustment.prior_of = WindowAdjustmentOptions::PriorOf::kPose;
   options.adjustment.pose_sigma_px = 20;
   options.adjustment.smoothness_sigma_px = 0.3;

@@ -187,7 +187,7 @@ RefinedDepth refine_depth_of(const ViewWindow& window, std::span<const EdgePoint
   return depth.with_open_gates<RefinedDepth>(
       [&](const RayDepth& opened) {
         RefinedDepth refined;
-        WindowEdgels edges = opened.find_edgels(window);
+        WindowEdgels edges = opened.find_delayed_edgels(window);
         ViewWindow delayed = window;
         delayed.event_delay_s = edges.delay.delay_s;
         EdgeOptimizer optimizer(delayed, camera);
