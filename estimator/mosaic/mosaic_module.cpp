@@ -142,7 +142,6 @@ RunSummary run_mosaic(const RunRequest& request) {
   }
   const ContrastThresholds thresholds =
       contrast_thresholds(config.contrast_on, config.contrast_off, dataset, source.events);
-  if (thresholds.is_found) adapt_to_found_thresholds(config.mosaic.equations);
   std::optional<double>& blind_time_us = config.mosaic.observations().blind_time_us;
   if (!blind_time_us)
     blind_time_us =

@@ -43,7 +43,6 @@ RunSummary run_reconstruction(const RunRequest& request) {
   const ViewInput input = load_view_input(request, dataset, timing);
   const ContrastThresholds thresholds =
       contrast_thresholds(config.contrast_on, config.contrast_off, dataset, input.events());
-  if (thresholds.is_found) adapt_to_found_thresholds(config.equations);
   std::optional<double>& blind_time_us = config.observations().blind_time_us;
   if (!blind_time_us)
     blind_time_us =

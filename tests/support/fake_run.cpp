@@ -78,12 +78,14 @@ constexpr const char* kTiming = R"({
 }  // namespace
 
 void write_corner_dataset(const std::filesystem::path& folder, const std::string& name,
-                          double duration_s, int width) {
+                          double duration_s, int width,
+                          const std::function<bool(const Event&)>& is_kept) {
   const PlanarWorld world = corner_world(width, width * 3 / 4);
   DatasetWriter writer(folder, world.camera());
   // Crossings at the border of two simulated steps may be out of order by the last bit.
   Events events = world.simulate(corner_motion, 0, duration_s, 0.001, 0.15);
   std::sort(events.begin(), events.end(), EventOrder{});
+  if (is_kept) std::erase_if(events, [&](const Event& event) { return !is_kept(event); });
   writer.write_events(events);
   const auto frames = static_cast<int>(duration_s * 24) + 1;
   for (int i = 0; i < frames; ++i) {

@@ -1,14 +1,19 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
+
+#include "core/event.h"
 
 namespace saccade::testing {
 
 /// Writes the dataset of corner_world() under corner_motion(): events, frames, depth maps and
-/// ground truth over `duration_s`, with `width` pixels on 4:3.
+/// ground truth over `duration_s`, with `width` pixels on 4:3. Of the events those for which `is_kept` says so, in order of
+/// time; all by default.
 void write_corner_dataset(const std::filesystem::path& folder, const std::string& name,
-                          double duration_s, int width = 240);
+                          double duration_s, int width = 240,
+                          const std::function<bool(const Event&)>& is_kept = {});
 
 /// How a fake estimator errs.
 struct FakeErrors {

@@ -22,9 +22,7 @@ constexpr int kIterations = 60;
 constexpr float kOutlierSigmas = 3;
 /// Difference of neighbours from which on the prior is their absolute difference (total variation).
 constexpr float kHuberThreshold = 0.02F;
-/// EquationOptions::smoothness_sigma.
-constexpr double kSmoothnessSigma = 0.05;
-/// As that, across an occluding contour: next to no prior.
+/// As EquationOptions::smoothness_sigma, across an occluding contour: next to no prior.
 constexpr double kContourSigma = 20;
 
 float value_at(const ImageF& image, const GridPoint& point) {
@@ -94,7 +92,7 @@ void add_observations(IntensitySystem& system, const ReferenceGrid& grid, const 
 /// variation) by reweighting.
 void add_smoothness(IntensitySystem& system, const ReferenceGrid& grid,
                     const EquationOptions& options, const ImageF& image) {
-  const double sigma = options.smoothness_sigma.value_or(kSmoothnessSigma);
+  const double sigma = options.smoothness_sigma * (image.empty() ? options.first_smoothness : 1);
   const auto within = static_cast<float>(1 / (sigma * sigma));
   const auto across = static_cast<float>(1 / (kContourSigma * kContourSigma));
   const auto add = [&](int i, int j, float shape) {
@@ -166,13 +164,8 @@ void describe(config::Fields& fields, EquationOptions& options) {
   fields
       .value("smoothness_sigma", options.smoothness_sigma,
              "Standard deviation of the difference of neighbouring pixels where nothing else is "
-             "known, in log units; smaller values give smoother images. ~ is 0.05, or 0.1 where "
-             "nobody states the contrast thresholds.")
+             "known, in log units; smaller values give smoother images.")
       .range(1e-4, 1e4);
-}
-
-void adapt_to_found_thresholds(EquationOptions& options) {
-  if (!options.smoothness_sigma) options.smoothness_sigma = 2 * kSmoothnessSigma;
 }
 
 Reconstruction EquationReconstruction::solve(ObservationSource& source,

@@ -22,20 +22,20 @@ struct EquationOptions {
       .expected_fraction = 0.4,
       .first_event_sigma = 0.8,
       .blind_time_us = {},
+      .balanced = true,
       .reprojection = {
           .redraw_motion_px = 8, .redraw_parallax_px = 1.4, .discontinuity_margin_px = 1}};
   double merge_radius_px = 0.9;  ///< observations of a run that lie closer are merged
-  /// By default 0.05, or twice that where the thresholds are not known: then nor is their noise, and
-  /// a prior that is as firm flattens what few events say.
-  std::optional<double> smoothness_sigma;
+  double smoothness_sigma =
+      0.05;  ///< of the difference of neighbours, where that is small [log units]
+  /// Of the first round, in those: its squares of differences flatten steep edges, and what they
+  /// flatten, the absolute differences of the second do not bring back.
+  double first_smoothness = 4;
   double bound_sigma = 0.3;  ///< of no-event constraints, from the second round on [log units]
   double tolerance = 0.005;  ///< of the relative residual of conjugate gradients
 };
 
 void describe(config::Fields& fields, EquationOptions& options);
-
-/// Sets what depends on whether thresholds are stated and what the configuration leaves open.
-void adapt_to_found_thresholds(EquationOptions& options);
 
 /// Every event is one linear equation of the reference view's log intensity: at the instant of its
 /// k-th event a pixel observes it exactly, but for an offset of its own,

@@ -11,7 +11,7 @@ constexpr int kRunTile_px = 16;
 
 EventRuns::EventRuns(const ReferenceGrid& grid, std::span<const ObservationKind> kinds)
     : grid_(grid),
-      kinds_(kinds.begin(), kinds.end()),
+      kinds_(kinds),
       tiles_per_row_(grid.width() / kRunTile_px + 1),
       tiles_(static_cast<std::size_t>(tiles_per_row_ * (grid.height() / kRunTile_px + 1))) {}
 

@@ -15,7 +15,7 @@ namespace saccade {
 /// are stored near each other, so that the unknowns they touch stay in the cache.
 class EventRuns {
  public:
-  /// `grid`: the pixels that the observations are of, which outlive this.
+  /// `grid`: the pixels that the observations are of. Both outlive this.
   EventRuns(const ReferenceGrid& grid, std::span<const ObservationKind> kinds);
 
   /// More observations, in order of time. Runs begin in the order of their numbers.
@@ -48,7 +48,7 @@ class EventRuns {
   static void merge(std::span<const IntensityObservation> all, float radius_px, Tile& tile);
 
   const ReferenceGrid& grid_;
-  std::vector<ObservationKind> kinds_;
+  std::span<const ObservationKind> kinds_;
   int tiles_per_row_;
   std::vector<Tile> tiles_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>>

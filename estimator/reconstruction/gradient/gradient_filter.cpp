@@ -26,7 +26,7 @@ float GradientState::least_variance() const {
 GradientFilter::GradientFilter(const ReferenceGrid& grid, std::span<const ObservationKind> kinds,
                                double prior_variance)
     : grid_(grid),
-      kinds_(kinds.begin(), kinds.end()),
+      kinds_(kinds),
       states_(static_cast<std::size_t>(grid.width()) * static_cast<std::size_t>(grid.height())) {
   for (GradientState& state : states_) state.pxx = state.pyy = static_cast<float>(prior_variance);
 }

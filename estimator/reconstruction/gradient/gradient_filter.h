@@ -46,7 +46,7 @@ class GradientFilter {
   void measure(const IntensityObservation& from, const IntensityObservation& to);
 
   const ReferenceGrid& grid_;
-  std::vector<ObservationKind> kinds_;
+  std::span<const ObservationKind> kinds_;
   std::vector<GradientState> states_;
   std::vector<IntensityObservation> last_;  ///< of every run; x < 0: none
 };

@@ -49,6 +49,11 @@ void describe(config::Fields& fields, ObservationOptions& options, bool has_surf
              "it. ~ finds it by the shortest times between two events of a pixel; 0: pixels miss "
              "nothing.")
       .range(0, 1e6);
+  fields.value(
+      "balanced", options.balanced,
+      "Whether rises and falls of a window are balanced: pixels that leak begin below what "
+      "they see, and fast ones miss more falls than rises or the reverse, which the whole "
+      "sensor shows and no scene does. false takes every event as a threshold.");
   if (!has_surfaces) return;
   fields
       .value("redraw_parallax_px", options.reprojection.redraw_parallax_px,
@@ -87,7 +92,8 @@ ReprojectedObservations<Path>::ReprojectedObservations(Path path, const PinholeC
     : path_(std::move(path)),
       contrast_on_(static_cast<float>(thresholds.on)),
       contrast_off_(static_cast<float>(thresholds.off)),
-      changes_(thresholds, 1e-6 * options.blind_time_us.value_or(0)),
+      expected_((contrast_on_ + contrast_off_) / 2 * static_cast<float>(options.expected_fraction)),
+      changes_(thresholds, 1e-6 * options.blind_time_us.value_or(0), options.balanced),
       options_(options),
       pixels_(camera.width, camera.height),
       strides_((camera.width - 1) / kTile_px + 1, (camera.height - 1) / kTile_px + 1,
@@ -97,20 +103,23 @@ ReprojectedObservations<Path>::ReprojectedObservations(Path path, const PinholeC
   // (C / 2 +- C / sqrt(12)); without an event so far it may be on either side.
   const auto sigma = static_cast<float>(options.event_sigma);
   const float contrast = (contrast_on_ + contrast_off_) / 2;
-  const float expected = contrast * static_cast<float>(options.expected_fraction);
   kinds_[kEvent] = {sigma, 0, 0};
   kinds_[kStart] = {contrast * static_cast<float>(std::max(options.first_event_sigma, 1e-3)), 0, 0};
   kinds_[kJumpOn] = {std::hypot(sigma, contrast_on_), 0, 0};
   kinds_[kJumpOff] = {std::hypot(sigma, contrast_off_), 0, 0};
   kinds_[kNoEvent] = {contrast / std::sqrt(3.0F), contrast, 0};
-  kinds_[kNoEventAfterOn] = {contrast / std::sqrt(12.0F), contrast, expected};
-  kinds_[kNoEventAfterOff] = {contrast / std::sqrt(12.0F), contrast, -expected};
+  kinds_[kNoEventAfterOn] = {contrast / std::sqrt(12.0F), contrast, expected_};
+  kinds_[kNoEventAfterOff] = {contrast / std::sqrt(12.0F), contrast, -expected_};
   for (ObservationKind& kind : kinds_) kind.weight = 1 / (kind.sigma * kind.sigma);
 }
 
 template <class Path>
 void ReprojectedObservations<Path>::plan(std::span<const Event> events) {
   changes_.weigh(events, {pixels_.width(), pixels_.height()});
+  // Pixels that leak go on beyond their last event as often up as down, though more of their last events are ON.
+  const float polarity = changes_.bias().last_polarity;
+  kinds_[kNoEventAfterOn].expected = expected_ * (1 - polarity);
+  kinds_[kNoEventAfterOff].expected = -expected_ * (1 + polarity);
   Image<int> counts(strides_.width(), strides_.height());
   for (const Event& event : events) ++counts(event.x / kTile_px, event.y / kTile_px);
   for (std::size_t i = 0; i < counts.size(); ++i) {
@@ -174,8 +183,8 @@ void ReprojectedObservations<Path>::add_event(const Event& event, const Reprojec
     pixel.events = 0;
   }
   if (pixel.last_polarity == 0 && pixel.start_x != kNowhere)
-    observations.push_back(
-        {pixel.start_x, pixel.start_y, 0, IntensityObservation::tag(pixel.run, kStart)});
+    observations.push_back({pixel.start_x, pixel.start_y, changes_.bias().start,
+                            IntensityObservation::tag(pixel.run, kStart)});
   const Kind kind = !is_jump ? kEvent : is_on ? kJumpOn : kJumpOff;
   observations.push_back({reprojection.x, reprojection.y, pixel.log_intensity,
                           IntensityObservation::tag(pixel.run, kind)});

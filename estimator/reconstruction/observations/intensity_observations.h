@@ -65,6 +65,8 @@ struct ObservationOptions {
   double first_event_sigma = 0;
   /// For so long a pixel is blind after an event; nullopt: to be found (find_blind_time_us()), none until then.
   std::optional<double> blind_time_us = 0;
+  bool balanced =
+      false;  ///< whether the bias of the changes over a window is taken out (level_bias.h)
   ReprojectionOptions reprojection{.redraw_motion_px = 4};
 };
 
@@ -80,8 +82,8 @@ class ObservationSource {
 
   [[nodiscard]] virtual std::span<const ObservationKind> kinds() const = 0;
 
-  /// Thins no-event constraints where many of `events` lie (dense_events_per_px), and weighs what pixels miss
-  /// while they are blind. Before observe().
+  /// Thins no-event constraints where many of `events` lie (dense_events_per_px), weighs what pixels miss
+  /// while they are blind and finds the bias of their changes, which changes kinds(). Before observe().
   virtual void plan(std::span<const Event> events) = 0;
 
   /// Appends the observations of `events` (in order of time, and not before those of an earlier
@@ -146,6 +148,7 @@ class ReprojectedObservations : public ObservationSource {
 
   Path path_;
   float contrast_on_, contrast_off_;
+  float expected_;  ///< beyond the last event of a pixel [log units]
   LevelChanges changes_;
   ObservationOptions options_;
   std::array<ObservationKind, kKinds> kinds_;

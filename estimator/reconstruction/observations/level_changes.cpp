@@ -16,10 +16,11 @@ constexpr double kMostWeight = 1.5;
 
 }  // namespace
 
-LevelChanges::LevelChanges(const ContrastThresholds& thresholds, double blind_s)
+LevelChanges::LevelChanges(const ContrastThresholds& thresholds, double blind_s, bool balanced)
     : on_(static_cast<float>(thresholds.on)),
       off_(static_cast<float>(thresholds.off)),
-      blind_ns_(static_cast<float>(1e9 * blind_s)) {}
+      blind_ns_(static_cast<float>(1e9 * blind_s)),
+      balanced_(balanced) {}
 
 float LevelChanges::seen_ns(TimeNs interval_ns) const {
   return std::max(static_cast<float>(interval_ns) - blind_ns_, kLeastSeen * blind_ns_);
@@ -32,12 +33,32 @@ float LevelChanges::blind_change(const Event& event, Pixel& pixel) const {
     change = blind_ns_ * (pixel.slope + slope) / 2;
     pixel.slope = slope;
   }
-  pixel.t_ns = event.t_ns;
-  pixel.polarity = event.polarity;
   return change;
 }
 
 void LevelChanges::weigh(std::span<const Event> events, SensorSize size) {
+  weigh_blind(events, size);
+  bias_ = balanced_ ? bias_of(events, size) : LevelBias();
+}
+
+LevelBias LevelChanges::bias_of(std::span<const Event> events, SensorSize size) const {
+  LevelBiasFit fit(size);
+  Image<Pixel> pixels(size.width, size.height);
+  for (const Event& event : events) {
+    Pixel& pixel = pixels(event.x, event.y);
+    const Pixel before = pixel;
+    const float change = sensed(event, pixel);
+    if (before.polarity == 0)
+      fit.add_first(event, change);
+    else
+      fit.add(event, change, event.t_ns - before.t_ns, before.polarity);
+  }
+  for (const Pixel& pixel : pixels.pixels())
+    if (pixel.polarity != 0) fit.add_rest(events.back().t_ns - pixel.t_ns, pixel.polarity);
+  return fit.found();
+}
+
+void LevelChanges::weigh_blind(std::span<const Event> events, SensorSize size) {
   rise_weight_ = fall_weight_ = 0;
   if (blind_ns_ == 0) return;
   Image<Pixel> pixels(size.width, size.height);
@@ -56,6 +77,8 @@ void LevelChanges::weigh(std::span<const Event> events, SensorSize size) {
     }
     seen += static_cast<double>(threshold(event));
     const auto blind = static_cast<double>(blind_change(event, pixel));
+    pixel.t_ns = event.t_ns;
+    pixel.polarity = event.polarity;
     (blind > 0 ? rises : falls) += std::abs(blind);
   }
   const double correlation = pairs > 0 ? std::max(0.0, agreeing / pairs) : 0;

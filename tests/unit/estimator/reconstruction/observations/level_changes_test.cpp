@@ -4,7 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
+#include <utility>
 #include <vector>
+
+#include "core/image.h"
 
 namespace saccade {
 namespace {
@@ -111,6 +115,91 @@ TEST(LevelChanges, DoNotTakeAStepForASteepRamp) {
   // A threshold and what half the blind time as seen makes of it: two more.
   EXPECT_GT(highest, 20 * 0.2 * 2);
   EXPECT_LT(highest, 20 * 0.2 * 3.2);
+}
+
+constexpr SensorSize kSensor{128, 96};
+constexpr int kChanges = 30;
+
+/// Every pixel gains and loses thresholds by chance, as often the one as the other; of the falls that come within 0.3 ms a
+/// part is missing.
+Events events_of_chance(double missed_falls) {
+  std::mt19937 random(7);
+  std::bernoulli_distribution rises(0.5), is_missed(missed_falls), is_quick(0.5);
+  Events events;
+  for (int i = 0; i < kChanges; ++i)
+    for (int y = 0; y < kSensor.height; ++y)
+      for (int x = 0; x < kSensor.width; ++x) {
+        const bool is_rise = rises(random), comes_quickly = is_quick(random);
+        // The times of the pixels in between differ, so that events stay in order.
+        const TimeNs t_ns = i * 2'000'000LL - (comes_quickly && i % 2 == 1 ? 1'800'000 : 0);
+        if (!is_rise && i % 2 == 1 && comes_quickly && is_missed(random)) continue;
+        events.push_back({t_ns, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
+                          static_cast<std::int8_t>(is_rise ? 1 : -1)});
+      }
+  std::stable_sort(events.begin(), events.end(),
+                   [](const Event& a, const Event& b) { return a.t_ns < b.t_ns; });
+  return events;
+}
+
+/// What a pixel gains over the window, mean over the sensor, and the bias that was found.
+std::pair<double, LevelBias> mean_gain(const Events& events, bool balanced) {
+  LevelChanges changes(kThresholds, 0, balanced);
+  changes.weigh(events, kSensor);
+  Image<LevelChanges::Pixel> pixels(kSensor.width, kSensor.height);
+  double gain = 0;
+  for (const Event& event : events)
+    gain += static_cast<double>(changes.next(event, pixels(event.x, event.y)));
+  return {gain / static_cast<double>(pixels.size()), changes.bias()};
+}
+
+TEST(LevelChanges, BalanceWhatFastPixelsMiss) {
+  const Events events = events_of_chance(0.3);
+  const double unbalanced = mean_gain(events, false).first;
+  const auto [balanced, bias] = mean_gain(events, true);
+  // 15 odd changes, half of them quick falls' share: 15 x 0.25 x 0.3 thresholds.
+  EXPECT_NEAR(unbalanced, 15 * 0.25 * 0.3 * kThresholds.on, 0.02);
+  EXPECT_LT(std::abs(balanced), 0.1 * unbalanced);
+  EXPECT_GT(bias.per_quick_change, 0.05F);
+}
+
+TEST(LevelChanges, OfAFairSensorAreTaken) {
+  const LevelBias bias = mean_gain(events_of_chance(0), true).second;
+  EXPECT_EQ(bias.per_change, 0);
+  EXPECT_EQ(bias.per_quick_change, 0);
+  // Four standard deviations of the mean of 12,288 first events.
+  EXPECT_NEAR(bias.start, 0, 0.036 * kThresholds.on);
+  EXPECT_NEAR(bias.last_polarity, 0, 0.01);
+}
+
+TEST(LevelChanges, BeginBelowWhatLeakingPixelsSee) {
+  // Nine of ten first events are ON; what comes later is as often of either.
+  Events events;
+  for (int y = 0; y < kSensor.height; ++y)
+    for (int x = 0; x < kSensor.width; ++x) {
+      const int first = (x + y) % 10 == 0 ? -1 : 1;
+      for (int i = 0; i < 3; ++i)
+        events.push_back({i * 3'000'000LL, static_cast<std::uint16_t>(x),
+                          static_cast<std::uint16_t>(y),
+                          static_cast<std::int8_t>(i == 0             ? first
+                                                   : (x + i) % 2 == 0 ? 1
+                                                                      : -1)});
+    }
+  std::stable_sort(events.begin(), events.end(),
+                   [](const Event& a, const Event& b) { return a.t_ns < b.t_ns; });
+  const LevelBias bias = mean_gain(events, true).second;
+  EXPECT_NEAR(bias.start, 0.8 * kThresholds.on, 0.01);
+  // For 3 of 6 ms the last event is the first one.
+  EXPECT_NEAR(bias.last_polarity, 0.4, 0.02);
+  EXPECT_EQ(bias.per_change, 0);
+}
+
+TEST(LevelBias, IsNeverMoreThanHalfAChange) {
+  LevelBias bias;
+  bias.per_quick_change = -9;
+  EXPECT_FLOAT_EQ(bias.of(0.2F, 1), -0.1F);
+  EXPECT_FLOAT_EQ(bias.of(-0.2F, 0.01F), -0.018F);
+  EXPECT_FLOAT_EQ(LevelBias::quickness(100'000), 1);
+  EXPECT_FLOAT_EQ(LevelBias::quickness(600'000), 0.5F);
 }
 
 }  // namespace
