@@ -22,8 +22,8 @@ struct MosaicOptions : ImageMethodOptions {
     equations.observations.dense_events_per_px = 1e9;
     // A camera that turns fast sees other texture after a blind time than before it.
     equations.observations.blind_time_us = 0;
-    // Over a full view what is balanced hardly changes (SSIM by 0.002), and the scale of the panorama does.
-    equations.observations.balanced = false;
+    // Over a full view it hardly matters (SSIM by 0.002), and the scale of the panorama does.
+    equations.observations.remove_bias = false;
     equations.merge_radius_px = 1.1;
     equations.bound_sigma = 0.2;
     // Each place is seen hundreds of times: noise counts for more than steep edges.

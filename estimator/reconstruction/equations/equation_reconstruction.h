@@ -22,13 +22,13 @@ struct EquationOptions {
       .expected_fraction = 0.4,
       .first_event_sigma = 0.8,
       .blind_time_us = {},
-      .balanced = true,
+      .remove_bias = true,
       .reprojection = {
           .redraw_motion_px = 8, .redraw_parallax_px = 1.4, .discontinuity_margin_px = 1}};
   double merge_radius_px = 0.9;  ///< observations of a run that lie closer are merged
   double smoothness_sigma =
       0.05;  ///< of the difference of neighbours, where that is small [log units]
-  /// Of the first round, in those: its squares of differences flatten steep edges, and what they
+  /// The sigma of the first round is so many times as large: its squares of differences flatten steep edges, and what they
   /// flatten, the absolute differences of the second do not bring back.
   double first_smoothness = 4;
   double bound_sigma = 0.3;  ///< of no-event constraints, from the second round on [log units]

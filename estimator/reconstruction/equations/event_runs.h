@@ -15,7 +15,8 @@ namespace saccade {
 /// are stored near each other, so that the unknowns they touch stay in the cache.
 class EventRuns {
  public:
-  /// `grid`: the pixels that the observations are of. Both outlive this.
+  /// `grid`: the pixels that the observations are of. Both outlive this; kinds are
+  /// complete after plan() of their source.
   EventRuns(const ReferenceGrid& grid, std::span<const ObservationKind> kinds);
 
   /// More observations, in order of time. Runs begin in the order of their numbers.

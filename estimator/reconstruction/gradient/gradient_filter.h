@@ -34,7 +34,7 @@ struct GradientState {
 /// can show.
 class GradientFilter {
  public:
-  /// `prior_variance` > 0: P0 of (6.6).
+  /// `prior_variance` > 0: P0 of (6.6). `kinds` outlive this, and are complete before add().
   GradientFilter(const ReferenceGrid& grid, std::span<const ObservationKind> kinds,
                  double prior_variance);
 

@@ -49,11 +49,12 @@ void describe(config::Fields& fields, ObservationOptions& options, bool has_surf
              "it. ~ finds it by the shortest times between two events of a pixel; 0: pixels miss "
              "nothing.")
       .range(0, 1e6);
-  fields.value(
-      "balanced", options.balanced,
-      "Whether rises and falls of a window are balanced: pixels that leak begin below what "
-      "they see, and fast ones miss more falls than rises or the reverse, which the whole "
-      "sensor shows and no scene does. false takes every event as a threshold.");
+  fields.value("remove_bias", options.remove_bias,
+               "Whether to remove what pixels gain on average over a window: those that leak begin "
+               "a part of a threshold below "
+               "what they see, and fast ones miss more falls than rises or the reverse. false sums "
+               "rises and falls up as "
+               "they come.");
   if (!has_surfaces) return;
   fields
       .value("redraw_parallax_px", options.reprojection.redraw_parallax_px,
@@ -71,7 +72,10 @@ double ObservationSource::observe_all(
     std::span<const Event> events, const Trajectory& world_from_camera,
     const std::function<void(std::span<const IntensityObservation>, double)>& use) {
   double seconds = 0;
-  plan(events);
+  {
+    const ScopedTimer clock(seconds);
+    plan(events);
+  }
   std::vector<IntensityObservation> part;
   for (std::size_t begin = 0; begin < events.size(); begin += kBatch) {
     part.clear();
@@ -93,7 +97,7 @@ ReprojectedObservations<Path>::ReprojectedObservations(Path path, const PinholeC
       contrast_on_(static_cast<float>(thresholds.on)),
       contrast_off_(static_cast<float>(thresholds.off)),
       expected_((contrast_on_ + contrast_off_) / 2 * static_cast<float>(options.expected_fraction)),
-      changes_(thresholds, 1e-6 * options.blind_time_us.value_or(0), options.balanced),
+      changes_(thresholds, 1e-6 * options.blind_time_us.value_or(0), options.remove_bias),
       options_(options),
       pixels_(camera.width, camera.height),
       strides_((camera.width - 1) / kTile_px + 1, (camera.height - 1) / kTile_px + 1,
@@ -116,7 +120,8 @@ ReprojectedObservations<Path>::ReprojectedObservations(Path path, const PinholeC
 template <class Path>
 void ReprojectedObservations<Path>::plan(std::span<const Event> events) {
   changes_.weigh(events, {pixels_.width(), pixels_.height()});
-  // Pixels that leak go on beyond their last event as often up as down, though more of their last events are ON.
+  // The log intensity goes on beyond the last events of leaking pixels as often up as down, though more of these are ON.
+  // Before a first event it is expected at the reference as ever: expected at the start of it, no image was better.
   const float polarity = changes_.bias().last_polarity;
   kinds_[kNoEventAfterOn].expected = expected_ * (1 - polarity);
   kinds_[kNoEventAfterOff].expected = -expected_ * (1 + polarity);

@@ -65,8 +65,7 @@ struct ObservationOptions {
   double first_event_sigma = 0;
   /// For so long a pixel is blind after an event; nullopt: to be found (find_blind_time_us()), none until then.
   std::optional<double> blind_time_us = 0;
-  bool balanced =
-      false;  ///< whether the bias of the changes over a window is taken out (level_bias.h)
+  bool remove_bias = false;  ///< of the changes over a window (change_bias.h)
   ReprojectionOptions reprojection{.redraw_motion_px = 4};
 };
 

@@ -16,11 +16,11 @@ constexpr double kMostWeight = 1.5;
 
 }  // namespace
 
-LevelChanges::LevelChanges(const ContrastThresholds& thresholds, double blind_s, bool balanced)
+LevelChanges::LevelChanges(const ContrastThresholds& thresholds, double blind_s, bool removes_bias)
     : on_(static_cast<float>(thresholds.on)),
       off_(static_cast<float>(thresholds.off)),
       blind_ns_(static_cast<float>(1e9 * blind_s)),
-      balanced_(balanced) {}
+      removes_bias_(removes_bias) {}
 
 float LevelChanges::seen_ns(TimeNs interval_ns) const {
   return std::max(static_cast<float>(interval_ns) - blind_ns_, kLeastSeen * blind_ns_);
@@ -38,23 +38,25 @@ float LevelChanges::blind_change(const Event& event, Pixel& pixel) const {
 
 void LevelChanges::weigh(std::span<const Event> events, SensorSize size) {
   weigh_blind(events, size);
-  bias_ = balanced_ ? bias_of(events, size) : LevelBias();
+  bias_ = removes_bias_ ? bias_of(events, size) : ChangeBias();
 }
 
-LevelBias LevelChanges::bias_of(std::span<const Event> events, SensorSize size) const {
-  LevelBiasFit fit(size);
+ChangeBias LevelChanges::bias_of(std::span<const Event> events, SensorSize size) const {
+  ChangeBiasFit fit(size);
   Image<Pixel> pixels(size.width, size.height);
   for (const Event& event : events) {
     Pixel& pixel = pixels(event.x, event.y);
     const Pixel before = pixel;
-    const float change = sensed(event, pixel);
+    const float change = biased(event, pixel);
     if (before.polarity == 0)
       fit.add_first(event, change);
     else
       fit.add(event, change, event.t_ns - before.t_ns, before.polarity);
   }
-  for (const Pixel& pixel : pixels.pixels())
-    if (pixel.polarity != 0) fit.add_rest(events.back().t_ns - pixel.t_ns, pixel.polarity);
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x)
+      if (const Pixel& pixel = pixels(x, y); pixel.polarity != 0)
+        fit.add_rest(x, y, events.back().t_ns - pixel.t_ns, pixel.polarity);
   return fit.found();
 }
 
@@ -74,8 +76,9 @@ void LevelChanges::weigh_blind(std::span<const Event> events, SensorSize size) {
       const double weight = 1 / static_cast<double>(seen_ns(event.t_ns - pixel.t_ns));
       pairs += weight;
       agreeing += weight * event.polarity * pixel.polarity;
+      // First events are of one polarity where pixels leak.
+      seen += static_cast<double>(threshold(event));
     }
-    seen += static_cast<double>(threshold(event));
     const auto blind = static_cast<double>(blind_change(event, pixel));
     pixel.t_ns = event.t_ns;
     pixel.polarity = event.polarity;

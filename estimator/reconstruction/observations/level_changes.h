@@ -5,7 +5,7 @@
 #include "core/event.h"
 #include "core/io/events/event_file.h"
 #include "estimator/reconstruction/contrast_thresholds.h"
-#include "estimator/reconstruction/observations/level_bias.h"
+#include "estimator/reconstruction/observations/change_bias.h"
 
 namespace saccade {
 
@@ -27,8 +27,8 @@ class LevelChanges {
     float slope = 0;   ///< before that [log units / ns]
   };
 
-  /// `blind_s` >= 0; 0: every event is a threshold. `balanced`: the bias of the changes is taken out (level_bias.h).
-  LevelChanges(const ContrastThresholds& thresholds, double blind_s, bool balanced = false);
+  /// `blind_s` >= 0; 0: every event is a threshold. `removes_bias`: of the changes, change_bias.h.
+  LevelChanges(const ContrastThresholds& thresholds, double blind_s, bool removes_bias = false);
 
   /// Weighs blind changes and finds the bias by all events of a window, in order of time. Before next().
   void weigh(std::span<const Event> events, SensorSize size);
@@ -37,18 +37,18 @@ class LevelChanges {
   [[nodiscard]] float next(const Event& event, Pixel& pixel) const {
     const bool is_first = pixel.polarity == 0;
     const TimeNs interval_ns = event.t_ns - pixel.t_ns;
-    const float change = sensed(event, pixel);
-    return change - bias_.of(change, is_first ? 0 : LevelBias::quickness(interval_ns));
+    const float change = biased(event, pixel);
+    return is_first ? change : change - bias_.of(change, ChangeBias::quickness(interval_ns));
   }
 
-  [[nodiscard]] const LevelBias& bias() const { return bias_; }
+  [[nodiscard]] const ChangeBias& bias() const { return bias_; }
 
  private:
   [[nodiscard]] float threshold(const Event& event) const {
     return event.polarity > 0 ? on_ : -off_;
   }
-  /// As next(), with the bias.
-  [[nodiscard]] float sensed(const Event& event, Pixel& pixel) const {
+  /// As next(), before the bias is removed.
+  [[nodiscard]] float biased(const Event& event, Pixel& pixel) const {
     const float blind = blind_ns_ == 0 ? 0 : blind_change(event, pixel);
     pixel.t_ns = event.t_ns;
     pixel.polarity = event.polarity;
@@ -58,13 +58,13 @@ class LevelChanges {
   [[nodiscard]] float seen_ns(TimeNs interval_ns) const;
   [[nodiscard]] float blind_change(const Event& event, Pixel& pixel) const;
   void weigh_blind(std::span<const Event> events, SensorSize size);
-  [[nodiscard]] LevelBias bias_of(std::span<const Event> events, SensorSize size) const;
+  [[nodiscard]] ChangeBias bias_of(std::span<const Event> events, SensorSize size) const;
 
   float on_, off_;
   float blind_ns_;
-  bool balanced_;
+  bool removes_bias_;
   float rise_weight_ = 0, fall_weight_ = 0;
-  LevelBias bias_;
+  ChangeBias bias_;
 };
 
 }  // namespace saccade

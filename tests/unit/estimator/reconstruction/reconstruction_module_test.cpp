@@ -167,21 +167,20 @@ TEST_F(ReconstructionModule, WithoutStatedThresholdsTheEventsAreBalanced) {
   EXPECT_GT(correlation("found"), 0.8);
 }
 
-TEST_F(ReconstructionModule, WhatPixelsMissIsBalanced) {
+TEST_F(ReconstructionModule, RemovesTheBiasOfWhatPixelsMiss) {
   // Every eighth fall is missing, which tilts the image along the motion.
   int falls = 0;
   testing::write_corner_dataset(path("lossy"), "lossy", 0.3, 120, [&](const Event& event) {
     return event.polarity > 0 || ++falls % 8 != 0;
   });
-  for (const char* balanced : {"false", "true"}) {
-    RunRequest run =
-        request(std::string("balanced_") + balanced,
-                "{method: equations, observations: {balanced: " + std::string(balanced) + "}}");
+  for (const std::string removed : {"false", "true"}) {
+    RunRequest run = request("removed_" + removed,
+                             "{method: equations, observations: {remove_bias: " + removed + "}}");
     run.dataset = path("lossy");
     (void)run_reconstruction(run);
   }
-  EXPECT_GT(correlation("balanced_true"), 0.8);
-  EXPECT_GT(correlation("balanced_true"), correlation("balanced_false") + 0.1);
+  EXPECT_GT(correlation("removed_true"), 0.8);
+  EXPECT_GT(correlation("removed_true"), correlation("removed_false") + 0.1);
 }
 
 TEST_F(ReconstructionModule, BadInputIsAnErrorThatNamesItsSource) {

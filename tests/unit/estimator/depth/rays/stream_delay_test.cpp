@@ -91,6 +91,16 @@ TEST(StreamDelay, IsTakenOutOfTheDepth) {
   }
 }
 
+// A path that is still to be adjusted has errors that look like one.
+TEST(StreamDelay, IsNotSoughtForEdgelsThatAdjustThePath) {
+  const Events events = shifted(shake, 2'000'000);
+  const Trajectory poses = trajectory_of(shake, kShakeEnd_s + 0.01);
+  const ViewWindow window{events, &poses, kShakeMiddle_s};
+  const RayDepth depth({}, {}, shaken_world().camera());
+  EXPECT_EQ(depth.find_edgels(window).delay.delay_s, 0);
+  EXPECT_NEAR(depth.find_delayed_edgels(window).delay.delay_s, 2e-3, 3e-4);
+}
+
 TEST(StreamDelay, IsNoneWhereEventsComeInTime) {
   const DepthResult result = depth_of(events_of(shake, 0), shake, true);
   EXPECT_LT(std::abs(result.event_delay_s), 5e-5);

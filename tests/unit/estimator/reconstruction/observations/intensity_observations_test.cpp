@@ -69,5 +69,43 @@ TEST(SurfaceObservations, TheFirstEventIsAThresholdFromWhatThePixelSawAtTheStart
   EXPECT_FLOAT_EQ(observations[4].log_intensity, -0.6F);
 }
 
+TEST(SurfaceObservations, LeakingPixelsBeginAboveTheirReferences) {
+  const PinholeCamera camera{96, 72, 80, 80, 47.5, 35.5, {}};
+  DepthScene scene;
+  scene.draw = [](const Rigid3&, const PinholeCamera&, ImageF& inverse) { inverse.fill(1); };
+  const ImageF reference(96, 72, 1);
+  const Trajectory motion({{0, Rigid3()}, {0.1, Rigid3()}});
+  // Nine of ten pixels rise, all after 1 ms, and stay so.
+  Events events{{0, 0, 0, 1}};
+  for (std::uint16_t y = 0; y < 72; ++y)
+    for (std::uint16_t x = 0; x < 96; ++x)
+      if (x + y > 0)
+        events.push_back({1'000'000, x, y, std::int8_t((x + 3 * y) % 10 == 0 ? -1 : 1)});
+  events.push_back({100'000'000, 0, 0, 1});
+  ObservationOptions options;
+  options.no_event_constraints = false;
+  options.first_event_sigma = 0.8;
+  options.expected_fraction = 0.4;
+  for (const bool removes : {false, true}) {
+    options.remove_bias = removes;
+    SurfaceObservations source(camera, scene, Rigid3(), reference, {0.2, 0.2}, options);
+    std::vector<IntensityObservation> observations;
+    source.plan(events);
+    source.observe(events, motion, observations);
+    // The second pixel: its start, and a threshold above its reference.
+    const IntensityObservation& start = observations[2];
+    EXPECT_NEAR(start.log_intensity, removes ? 0.8 * 0.2 : 0, 0.005);
+    EXPECT_FLOAT_EQ(observations[3].log_intensity, 0.2F);
+    EXPECT_EQ(observations[3].run(), start.run());
+    // Beyond nine last events that are ON and one that is OFF the log intensity is the same in the mean.
+    std::vector<float> expected;
+    for (const ObservationKind& kind : source.kinds())
+      if (kind.expected != 0) expected.push_back(kind.expected);
+    ASSERT_EQ(expected.size(), 2U);
+    EXPECT_NEAR(expected[0], removes ? 0.2 * 0.4 * 0.2 : 0.4 * 0.2, 0.002);
+    EXPECT_NEAR(expected[1], removes ? -1.8 * 0.4 * 0.2 : -0.4 * 0.2, 0.002);
+  }
+}
+
 }  // namespace
 }  // namespace saccade

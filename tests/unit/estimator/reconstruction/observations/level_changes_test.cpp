@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <utility>
 #include <vector>
 
 #include "core/image.h"
@@ -118,22 +117,21 @@ TEST(LevelChanges, DoNotTakeAStepForASteepRamp) {
 }
 
 constexpr SensorSize kSensor{128, 96};
-constexpr int kChanges = 30;
 
-/// Every pixel gains and loses thresholds by chance, as often the one as the other; of the falls that come within 0.3 ms a
-/// part is missing.
+/// Every pixel rises and falls by chance, thirty times. In the left half of the sensor every second change comes 0.2 ms after the one
+/// before it, in the right half after 2 ms as all others; of the quick falls a part is missing.
 Events events_of_chance(double missed_falls) {
   std::mt19937 random(7);
-  std::bernoulli_distribution rises(0.5), is_missed(missed_falls), is_quick(0.5);
+  std::bernoulli_distribution rises(0.5), is_missed(missed_falls);
   Events events;
-  for (int i = 0; i < kChanges; ++i)
+  for (int i = 0; i < 30; ++i)
     for (int y = 0; y < kSensor.height; ++y)
       for (int x = 0; x < kSensor.width; ++x) {
-        const bool is_rise = rises(random), comes_quickly = is_quick(random);
-        // The times of the pixels in between differ, so that events stay in order.
-        const TimeNs t_ns = i * 2'000'000LL - (comes_quickly && i % 2 == 1 ? 1'800'000 : 0);
-        if (!is_rise && i % 2 == 1 && comes_quickly && is_missed(random)) continue;
-        events.push_back({t_ns, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
+        const bool is_quick = i % 2 == 1 && x < kSensor.width / 2;
+        const bool is_rise = rises(random);
+        if (is_quick && !is_rise && is_missed(random)) continue;
+        events.push_back({i * 2'000'000LL - (is_quick ? 1'800'000 : 0),
+                          static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
                           static_cast<std::int8_t>(is_rise ? 1 : -1)});
       }
   std::stable_sort(events.begin(), events.end(),
@@ -141,65 +139,85 @@ Events events_of_chance(double missed_falls) {
   return events;
 }
 
-/// What a pixel gains over the window, mean over the sensor, and the bias that was found.
-std::pair<double, LevelBias> mean_gain(const Events& events, bool balanced) {
-  LevelChanges changes(kThresholds, 0, balanced);
+/// What a pixel gains over the window, mean over the sensor.
+double mean_gain(const Events& events, bool removes_bias) {
+  LevelChanges changes(kThresholds, 0, removes_bias);
   changes.weigh(events, kSensor);
   Image<LevelChanges::Pixel> pixels(kSensor.width, kSensor.height);
   double gain = 0;
   for (const Event& event : events)
     gain += static_cast<double>(changes.next(event, pixels(event.x, event.y)));
-  return {gain / static_cast<double>(pixels.size()), changes.bias()};
+  return gain / static_cast<double>(pixels.size());
 }
 
-TEST(LevelChanges, BalanceWhatFastPixelsMiss) {
+ChangeBias bias_of(const Events& events, SensorSize size = kSensor) {
+  LevelChanges changes(kThresholds, 0, true);
+  changes.weigh(events, size);
+  return changes.bias();
+}
+
+TEST(ChangeBias, OfQuickEventsIsFoundAndRemoved) {
   const Events events = events_of_chance(0.3);
-  const double unbalanced = mean_gain(events, false).first;
-  const auto [balanced, bias] = mean_gain(events, true);
-  // 15 odd changes, half of them quick falls' share: 15 x 0.25 x 0.3 thresholds.
-  EXPECT_NEAR(unbalanced, 15 * 0.25 * 0.3 * kThresholds.on, 0.02);
-  EXPECT_LT(std::abs(balanced), 0.1 * unbalanced);
-  EXPECT_GT(bias.per_quick_change, 0.05F);
+  // Of half of the pixels, 15 quick changes, half of them falls, of which 0.3 are missing.
+  const double gain = 0.5 * 15 * 0.5 * 0.3 * kThresholds.on;
+  EXPECT_NEAR(mean_gain(events, false), gain, 0.02);
+  EXPECT_LT(std::abs(mean_gain(events, true)), 0.1 * gain);
+  // 0.15 of what would be 1 is missing of 0.85.
+  const ChangeBias bias = bias_of(events);
+  EXPECT_NEAR(bias.fraction + bias.quick_fraction, 0.15 / 0.85, 0.04);
+  // Of those after 2 ms, which are 0.15 quick, nothing is.
+  EXPECT_NEAR(bias.fraction + 0.15F * bias.quick_fraction, 0, 0.01);
 }
 
-TEST(LevelChanges, OfAFairSensorAreTaken) {
-  const LevelBias bias = mean_gain(events_of_chance(0), true).second;
-  EXPECT_EQ(bias.per_change, 0);
-  EXPECT_EQ(bias.per_quick_change, 0);
-  // Four standard deviations of the mean of 12,288 first events.
-  EXPECT_NEAR(bias.start, 0, 0.036 * kThresholds.on);
-  EXPECT_NEAR(bias.last_polarity, 0, 0.01);
+TEST(ChangeBias, OfAFairSensorIsNone) {
+  const ChangeBias bias = bias_of(events_of_chance(0));
+  EXPECT_EQ(bias.fraction, 0);
+  EXPECT_EQ(bias.quick_fraction, 0);
+  EXPECT_EQ(bias.start, 0);
+  EXPECT_EQ(bias.last_polarity, 0);
+  EXPECT_DOUBLE_EQ(mean_gain(events_of_chance(0), true), mean_gain(events_of_chance(0), false));
 }
 
-TEST(LevelChanges, BeginBelowWhatLeakingPixelsSee) {
-  // Nine of ten first events are ON; what comes later is as often of either.
+TEST(ChangeBias, OfLeakingPixelsIsTheirStart) {
+  // Nine of ten first events are ON; what comes later is as often of either, more often in some parts of the sensor.
   Events events;
-  for (int y = 0; y < kSensor.height; ++y)
-    for (int x = 0; x < kSensor.width; ++x) {
-      const int first = (x + y) % 10 == 0 ? -1 : 1;
-      for (int i = 0; i < 3; ++i)
+  for (int i = 0; i < 7; ++i)
+    for (int y = 0; y < kSensor.height; ++y)
+      for (int x = 0; x < kSensor.width; ++x) {
+        if (i > 4 && x < kSensor.width / 3) continue;
+        const int first = (x + 3 * y) % 10 == 0 ? -1 : 1;
         events.push_back({i * 3'000'000LL, static_cast<std::uint16_t>(x),
                           static_cast<std::uint16_t>(y),
                           static_cast<std::int8_t>(i == 0             ? first
                                                    : (x + i) % 2 == 0 ? 1
                                                                       : -1)});
-    }
-  std::stable_sort(events.begin(), events.end(),
-                   [](const Event& a, const Event& b) { return a.t_ns < b.t_ns; });
-  const LevelBias bias = mean_gain(events, true).second;
-  EXPECT_NEAR(bias.start, 0.8 * kThresholds.on, 0.01);
-  // For 3 of 6 ms the last event is the first one.
-  EXPECT_NEAR(bias.last_polarity, 0.4, 0.02);
-  EXPECT_EQ(bias.per_change, 0);
+      }
+  const ChangeBias bias = bias_of(events);
+  EXPECT_NEAR(bias.start, 0.8 * kThresholds.on, 0.005);
+  // For 3 of 18 ms the last event is the first one.
+  EXPECT_NEAR(bias.last_polarity, 0.8 / 6, 0.04);
+  EXPECT_NEAR(bias.fraction, 0, 0.02);
 }
 
-TEST(LevelBias, IsNeverMoreThanHalfAChange) {
-  LevelBias bias;
-  bias.per_quick_change = -9;
+TEST(ChangeBias, OfOneEdgeOrFewEventsIsNone) {
+  EXPECT_EQ(bias_of({}).start, 0);
+  EXPECT_EQ(bias_of({{0, 3, 4, 1}}).start, 0);
+  // A bright edge crosses a few pixels; a sensor of one part cannot tell.
+  Events edge, small;
+  for (std::uint16_t x = 0; x < 10; ++x) edge.push_back({x * 1000LL, x, 50, 1});
+  for (std::uint16_t x = 0; x < 10; ++x) small.push_back({x * 1000LL, x, 5, 1});
+  EXPECT_EQ(bias_of(edge).start, 0);
+  EXPECT_EQ(bias_of(small, {16, 16}).start, 0);
+  EXPECT_EQ(bias_of(small, {16, 16}).last_polarity, 0);
+}
+
+TEST(ChangeBias, IsNeverMoreThanHalfAChange) {
+  ChangeBias bias;
+  bias.quick_fraction = -9;
   EXPECT_FLOAT_EQ(bias.of(0.2F, 1), -0.1F);
   EXPECT_FLOAT_EQ(bias.of(-0.2F, 0.01F), -0.018F);
-  EXPECT_FLOAT_EQ(LevelBias::quickness(100'000), 1);
-  EXPECT_FLOAT_EQ(LevelBias::quickness(600'000), 0.5F);
+  EXPECT_FLOAT_EQ(ChangeBias::quickness(100'000), 1);
+  EXPECT_FLOAT_EQ(ChangeBias::quickness(600'000), 0.5F);
 }
 
 }  // namespace
