@@ -26,8 +26,8 @@ struct EquationOptions {
       .reprojection = {
           .redraw_motion_px = 8, .redraw_parallax_px = 1.4, .discontinuity_margin_px = 1}};
   double merge_radius_px = 0.9;  ///< observations of a run that lie closer are merged
-  double smoothness_sigma =
-      0.05;  ///< of the difference of neighbours, where that is small [log units]
+  /// Of the difference of neighbours, where that is small [log units].
+  double smoothness_sigma = 0.05;
   /// The sigma of the first round is so many times as large: its squares of differences flatten steep edges, and what they
   /// flatten, the absolute differences of the second do not bring back.
   double first_smoothness = 4;
