@@ -9,6 +9,7 @@
 #include "core/time_search.h"
 #include "estimator/depth/sweep/sweep_depth.h"
 #include "estimator/edges/least_squares/robust_spread.h"
+#include "estimator/odometry/certain_points.h"
 #include "estimator/odometry/view_turn.h"
 #include "estimator/reconstruction/surface/point_surface.h"
 
@@ -81,15 +82,15 @@ WindowAdjustmentOptions for_length(WindowAdjustmentOptions adjustment, double le
   return adjustment;
 }
 
-constexpr double kMostRelaxed = 9;
-
-/// Edges of `factor` times the sigma count, too.
-MappingOptions relaxed(MappingOptions options, double factor) {
-  options.max_sigma *= factor;
+/// Edges of nine times the sigma count, too, in parts of the view that have few others.
+MappingOptions relaxed(MappingOptions options) {
+  constexpr double kFactor = 9;
+  options.certain_sigma = options.max_sigma;
+  options.max_sigma *= kFactor;
   RayDepthOptions& rays = options.depth.rays;
-  rays.refiner.max_sigma *= factor;
-  rays.propagation_max_sigma *= factor;
-  rays.fusion.max_sigma *= factor;
+  rays.refiner.max_sigma *= kFactor;
+  rays.propagation_max_sigma *= kFactor;
+  rays.fusion.max_sigma *= kFactor;
   return options;
 }
 
@@ -104,29 +105,16 @@ Mapper::Mapper(const MappingOptions& options, const PinholeCamera& camera)
 }
 
 Mapping Mapper::map(std::span<const Event> events, const PathEstimate& path) const {
-  Mapping mapping = map_once(events, path);
-  const auto is_enough = [&] {
-    return mapping.keyframe.edges.size() >= static_cast<std::size_t>(options_.min_edges);
-  };
-  const auto replace = [&](const MappingOptions& options) {
-    Mapping more = Mapper(options, camera_).map_once(events, path);
-    if (more.keyframe.edges.size() > mapping.keyframe.edges.size()) mapping = std::move(more);
-  };
-  if (is_enough()) return mapping;
-  for (const double factor : {3.0, kMostRelaxed})
-    if (!is_enough()) replace(relaxed(options_, factor));
-  if (!path.typical_depth_m) return mapping;
-  MappingOptions assuming = relaxed(options_, kMostRelaxed);
-  assuming.depth.rays.assumed_inverse_depth = 1 / *path.typical_depth_m;
-  replace(assuming);
-  return mapping;
-}
-
-Mapping Mapper::map_if_enough(std::span<const Event> events, const PathEstimate& path) const {
-  Mapping loosest = Mapper(relaxed(options_, kMostRelaxed), camera_).map_once(events, path);
+  if (options_.min_edges == 0) return map_once(events, path);
+  MappingOptions options = relaxed(options_);
+  Mapping mapping = Mapper(options, camera_).map_once(events, path);
   const bool is_enough =
-      loosest.keyframe.edges.size() >= static_cast<std::size_t>(options_.min_edges);
-  return is_enough ? map(events, path) : loosest;
+      mapping.keyframe.edges.size() >= static_cast<std::size_t>(options_.min_edges);
+  if (is_enough || !path.typical_depth_m) return mapping;
+  options.depth.rays.assumed_inverse_depth = 1 / *path.typical_depth_m;
+  Mapping assuming = Mapper(options, camera_).map_once(events, path);
+  return assuming.keyframe.edges.size() > mapping.keyframe.edges.size() ? std::move(assuming)
+                                                                        : std::move(mapping);
 }
 
 Mapping Mapper::map_once(std::span<const Event> events, const PathEstimate& path) const {
@@ -160,8 +148,8 @@ Mapping Mapper::map_once(std::span<const Event> events, const PathEstimate& path
   keyframe.t_s = window.reference_s;
   keyframe.world_from_camera = window.world_from_reference();
   keyframe.depth =
-      edges ? rays().fuse(*edges)
-            : make_depth_estimator(options_.depth, camera_, expected_m)->estimate(window);
+      certain(edges ? rays().fuse(*edges)
+                    : make_depth_estimator(options_.depth, camera_, expected_m)->estimate(window));
   keyframe.typical_depth_m = median_depth(keyframe.depth, expected_m);
   if (options_.edges == MappingOptions::Edges::kGradient) {
     if (keyframe.depth.points.empty()) return mapping;
@@ -200,7 +188,7 @@ std::optional<double> Mapper::common_depth(std::span<const Event> events, const 
       window.events.size() > most)
     window.events = some = of_some_pixels(window.events, most, camera_);
   if (window.events.empty()) return std::nullopt;
-  MappingOptions assuming = relaxed(options_, kMostRelaxed);
+  MappingOptions assuming = relaxed(options_);
   assuming.depth.rays.assumed_inverse_depth = 1 / assumed_m;
   const WindowEdgels found = Mapper(assuming, camera_).rays().find_edgels(window);
   std::vector<WeightedValue> inverse;  // relative to the assumed one
@@ -234,7 +222,7 @@ void Mapper::refit(const Trajectory& path, const PathEstimate& estimate, Mapping
                               options_.adjustment);
   keyframe.world_from_camera = window.world_from_reference();
   const Mapper mapper(found.options, camera_);
-  keyframe.depth = mapper.rays().fuse(found.edges);
+  keyframe.depth = mapper.certain(mapper.rays().fuse(found.edges));
   mapper.add_points(keyframe);
   mapper.add_assumed_points(found.edges, keyframe);
 }
@@ -251,6 +239,11 @@ void Mapper::add_image(std::span<const Event> events, const Trajectory& poses,
                        Keyframe& keyframe) const {
   if (!keyframe.image.log_image.empty() || keyframe.depth.points.empty()) return;
   reconstruct(window_of(events, poses, keyframe), dense_depth(keyframe), keyframe);
+}
+
+DepthResult Mapper::certain(DepthResult depth) const {
+  if (options_.certain_sigma > 0) keep_certain(camera_, options_.certain_sigma, depth.points);
+  return depth;
 }
 
 RayDepth Mapper::rays() const {

@@ -29,11 +29,14 @@ struct MappingOptions {
   Edges edges = Edges::kDepth;    ///< steep pixels of the reconstruction, or the points with depth
   bool image = true;              ///< made after the last event, where the edges do not need it
   double max_sigma = 0.05;        ///< of a point's inverse depth that becomes an edge, relative
-  /// Of kDepth: with fewer edges, those of 3 and 9 times the sigma are tracked, too: edges that
-  /// hardly move sideways need no better depth. Where these are too few, edges whose depth cannot be
-  /// told are tracked, too, at the typical depth where it is known. Renewed depths are the
-  /// certain ones alone.
+  /// Of kDepth: where it is not 0, parts of the view with few edges are tracked by those of up to 9
+  /// times the sigma, too (keep_certain()): what hardly moves, as the walls behind a table, tells
+  /// how the camera turns, and needs no better depth for that. Where all of them are fewer than this,
+  /// edges whose depth cannot be told are tracked, too, at the typical depth where it is known.
+  /// Renewed depths are the certain ones alone.
   int min_edges = 0;
+  /// Larger sigmas count only where the view has few points of this one, relative; 0: everywhere.
+  double certain_sigma = 0;
   double smoothing_s = 0;  ///< spacing of the knots of a spline through the poses; 0: as tracked
   /// Rounds of finding edges and adjusting them together with the poses; 0: the poses are taken as
   /// they are. Of DepthConfig's method rays.
@@ -90,11 +93,6 @@ class Mapper {
   /// A keyframe from the newest of `events`, none of them beyond the poses.
   [[nodiscard]] Mapping map(std::span<const Event> events, const PathEstimate& path) const;
 
-  /// The same for a window that may well show too few edges, of a path without a typical depth: with
-  /// the greatest sigma first, so that it costs one attempt in place of three.
-  [[nodiscard]] Mapping map_if_enough(std::span<const Event> events,
-                                      const PathEstimate& path) const;
-
   /// Depth and edges of a new keyframe on a better path, its events belonging to the edges that
   /// they belonged to before.
   void refit(const Trajectory& path, const PathEstimate& estimate, Mapping& mapping) const;
@@ -128,6 +126,7 @@ class Mapper {
                                                         double typical_depth_m) const;
   [[nodiscard]] ImageF dense_depth(const Keyframe& keyframe) const;
   void reconstruct(const ViewWindow& window, const ImageF& depth, Keyframe& keyframe) const;
+  [[nodiscard]] DepthResult certain(DepthResult depth) const;
   void add_steep_pixels(const ImageF& depth, Keyframe& keyframe) const;
   void add_points(Keyframe& keyframe) const;
   /// Those whose depth is assumed are tracked, but are no depth of the keyframe.

@@ -141,6 +141,10 @@ OdometryResult Odometry::run(std::span<const Event> events, const PathEstimate& 
     if (job_ && is_due(now_s)) end_mapping(now_s, result);
   }
   if (job_) end_mapping(path_.back().t_s, result);
+  if (wants_last_keyframe()) {
+    begin_mapping(events, path_.back().t_s);
+    end_mapping(path_.back().t_s, result);
+  }
   output(result);
   if (result.is_scale_guessed) lose_distant_poses(result);
   return result;
@@ -163,7 +167,7 @@ void Odometry::await_frame(const EventClock& clock, Stream& stream, OdometryResu
 void Odometry::add_pose(TrackedPose pose, OdometryResult& result) {
   const double now_s = seconds_from_ns(pose.last_ns);
   const bool may_be_lost =
-      pose.status == TrackStatus::kLost ||
+      tracker_.is_lost() ||
       (options_.relocation == Relocation::kInconsistent && !tracker_.is_consistent());
   if (may_be_lost && options_.relocation != Relocation::kNever &&
       now_s >= last_search_s_ + kSearchInterval_s) {
@@ -297,6 +301,11 @@ bool Odometry::wants_keyframe() const {
     if (smoother_.is_enabled()) distance_m = std::min(distance_m, baseline_m_ / 4);
   }
   return path_.back().t_s >= interval_from_s_ + interval_s && moved_m() >= distance_m;
+}
+
+bool Odometry::wants_last_keyframe() const {
+  const bool adjusts_path = smoother_.is_enabled() && options_.mapping.adjust_rounds > 0;
+  return adjusts_path && !is_lost_ && path_.back().t_s > last_keyframe_.t_s;
 }
 
 void Odometry::begin_mapping(std::span<const Event> events, double now_s) {

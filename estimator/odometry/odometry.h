@@ -157,6 +157,8 @@ class Odometry {
   [[nodiscard]] bool has_doubled_baseline() const;
   [[nodiscard]] bool has_turned() const;
   [[nodiscard]] bool wants_keyframe() const;
+  /// After the last event: what was tracked since the last keyframe is adjusted like all before it.
+  [[nodiscard]] bool wants_last_keyframe() const;
   [[nodiscard]] bool is_due(double now_s) const;
   [[nodiscard]] Mapping map(std::span<const Event> events, const PathEstimate& path);
   void smooth(const PathEstimate& path, Mapping& mapping);

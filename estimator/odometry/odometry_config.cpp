@@ -92,9 +92,10 @@ void describe_mapping(config::Fields& fields, MappingOptions& options) {
       .range(100, 1e9);
   fields
       .value("min_edges", options.min_edges,
-             "With fewer edges in a keyframe, less certain ones are tracked, too, and those of no "
-             "depth at the one that edges have in common; a start whose given poses show fewer is "
-             "extrapolated and adjusted. 0 disables all of it.")
+             "With fewer edges in a keyframe, those of no depth are tracked, too, at the one that "
+             "edges have in common; a start whose given poses show fewer is extrapolated and "
+             "adjusted. Parts of the view that show few certain edges are tracked by less certain "
+             "ones. 0 disables all of it.")
       .range(0, 1e6);
   fields.value("image", options.image,
                "Whether an image of every keyframe is reconstructed after the last event. Images "

@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/QR>
+
 #include "core/trajectory.h"
 #include "estimator/tracking/gyroscope.h"
 
@@ -27,40 +29,66 @@ inline void rotate_by(const Gyroscope& gyroscope, std::vector<StampedPose>& pose
   }
 }
 
-/// The acceleration at the end of given poses, and until when it may be taken to last.
+/// How the velocity changes at the end of given poses, and until when it may be taken to go on so.
 struct PathAcceleration {
-  Twist rate = Twist::Zero();  ///< of the twist in the camera [m/s^2, rad/s^2]
+  Twist rate = Twist::Zero();  ///< at their end, of the twist in the camera [m/s^2, rad/s^2]
+  Twist jerk = Twist::Zero();  ///< by which it changes [m/s^3, rad/s^3]
+  double end_s = 0;            ///< of the poses
   double until_s = 0;
+
+  [[nodiscard]] Twist at(double t_s) const { return rate + (t_s - end_s) * jerk; }
 };
 
-/// The acceleration of the last tenth of a second of `path`, or of all of it where it is shorter, by
-/// least squares. It lasts for as long again.
+/// The acceleration at the end of the last tenth of a second of `path`, or of all of it where it is
+/// shorter, by least squares, and its change where that stands out from the noise of the poses: a
+/// camera that leaves its rest goes a third of its way by it. Both last for as long again.
 [[nodiscard]] inline PathAcceleration last_acceleration(const Trajectory& path) {
   constexpr double kLongest_s = 0.1;
   const double end_s = path.end_s();
   const double length_s = std::min(kLongest_s, end_s - path.start_s());
   const Rigid3 end_from_world = path.poses().back().world_from_camera.inverse();
-  // The way before the end is a velocity and half an acceleration: d = v t + a t^2 / 2.
-  double tt = 0, ttt = 0, tttt = 0;
-  Twist td = Twist::Zero(), ttd = Twist::Zero();
+  std::vector<double> times;  // before the end, of the length
+  std::vector<Twist> twists;
   for (const StampedPose& pose : path.poses()) {
     const double t = (pose.t_s - end_s) / length_s;
     if (t < -1) continue;
-    const Twist d = (end_from_world * pose.world_from_camera).log();
-    tt += t * t;
-    ttt += t * t * t / 2;
-    tttt += t * t * t * t / 4;
-    td += t * d;
-    ttd += t * t / 2 * d;
+    times.push_back(t);
+    twists.push_back((end_from_world * pose.world_from_camera).log());
   }
-  const double determinant = tt * tttt - ttt * ttt;
-  constexpr double kLeast = 1e-9;  // of two poses, which tell a velocity alone
-  if (!(determinant > kLeast)) return {};
-  return {(tt * ttd - ttt * td) / (determinant * length_s * length_s), end_s + length_s};
+  // The way is a velocity, half an acceleration and a sixth of its change:
+  // d = v t + a t^2 / 2 + j t^3 / 6.
+  const auto count = static_cast<Eigen::Index>(times.size());
+  Eigen::MatrixX3d powers(count, 3);
+  Eigen::Matrix<double, Eigen::Dynamic, 6> ways(count, 6);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const double t = times[static_cast<std::size_t>(i)];
+    powers.row(i) << t, t * t / 2, t * t * t / 6;
+    ways.row(i) = twists[static_cast<std::size_t>(i)].transpose();
+  }
+  constexpr Eigen::Index kLeast = 4, kLeastOfChange = 6;  // poses
+  if (count < kLeast) return {};
+  const auto squares = powers.leftCols<2>();
+  const Eigen::MatrixXd quadratic = squares.colPivHouseholderQr().solve(ways);
+  PathAcceleration acceleration;
+  acceleration.rate = quadratic.row(1).transpose() / (length_s * length_s);
+  acceleration.end_s = end_s;
+  acceleration.until_s = end_s + length_s;
+  if (count < kLeastOfChange) return acceleration;
+  const Eigen::MatrixXd cubic = powers.colPivHouseholderQr().solve(ways);
+  // Four sigmas, as squares beside the variance that is left.
+  constexpr double kStandsOut = 16;
+  for (Eigen::Index k = 0; k < 6; ++k) {
+    const double without = (ways.col(k) - squares * quadratic.col(k)).squaredNorm();
+    const double with = (ways.col(k) - powers * cubic.col(k)).squaredNorm();
+    if (!(without - with > kStandsOut * with / static_cast<double>(count - 3))) continue;
+    acceleration.rate[k] = cubic(1, k) / (length_s * length_s);
+    acceleration.jerk[k] = cubic(2, k) / (length_s * length_s * length_s);
+  }
+  return acceleration;
 }
 
 /// `path` extrapolated at the velocity of its last 20 ms, or of all of it where it is shorter, and
-/// at this acceleration as long as that lasts, until `until_s` or just beyond; `gyroscope`, where it
+/// at this acceleration, which changes on, as long as that lasts, until `until_s` or just beyond; `gyroscope`, where it
 /// is not empty, measures the rotation.
 [[nodiscard]] inline Trajectory extrapolated(const Trajectory& path, double until_s,
                                              const Gyroscope& gyroscope,
@@ -73,13 +101,20 @@ struct PathAcceleration {
   // The velocity at their end is more than their mean by what is gained in them, as far as they are
   // accelerated: from the beginning until `until_s`.
   const double gaining_s = std::clamp(acceleration.until_s - (end_s - last_s), 0.0, last_s);
-  const Twist velocity = (path.at_clamped(end_s - last_s).inverse() * last).log() / last_s +
-                         0.5 * gaining_s * gaining_s / last_s * acceleration.rate;
+  const Twist gained = acceleration.at(end_s - last_s + gaining_s);
+  const Twist velocity =
+      ((path.at_clamped(end_s - last_s).inverse() * last).log() +
+       gaining_s * gaining_s * (gained / 2 - gaining_s / 6 * acceleration.jerk)) /
+      last_s;
+  const Twist now = acceleration.at(end_s);
   std::vector<StampedPose> poses(path.poses().begin(), path.poses().end());
   for (double t_s = end_s + kPoseSpacing_s; t_s < until_s + kPoseSpacing_s; t_s += kPoseSpacing_s) {
     const double way_s = t_s - end_s;
     const double faster_s = std::min(way_s, lasts_s);
-    const Twist way = way_s * velocity + faster_s * (way_s - 0.5 * faster_s) * acceleration.rate;
+    const Twist gain = faster_s * (now + faster_s / 2 * acceleration.jerk);
+    const Twist way = way_s * velocity +
+                      faster_s * faster_s * (now / 2 + faster_s / 6 * acceleration.jerk) +
+                      (way_s - faster_s) * gain;
     poses.push_back({t_s, last * Rigid3::exp(way)});
   }
   rotate_by(gyroscope, poses, path.size());

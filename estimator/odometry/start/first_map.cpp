@@ -157,7 +157,7 @@ FirstMap first_map(std::span<const Event> events, const PathEstimate& start, con
     // Where there is too little to adjust it by, the path is the longer one as it is.
     path.poses =
         with_given_poses(refinement.refine(window, longer, 1, start.given_until_s).poses, start);
-    Mapping mapping = mapper.map_if_enough(window, path);
+    Mapping mapping = mapper.map(window, path);
     if (mapping.keyframe.edges.size() > first.mapping.keyframe.edges.size())
       first = {path, std::move(mapping)};
   }

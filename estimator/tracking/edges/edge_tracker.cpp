@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/stopwatch.h"
@@ -200,19 +201,25 @@ void EdgeTracker::prepare_template(const Rigid3& map_from_camera) {
 
 bool EdgeTracker::template_fits(const Rigid3& map_from_camera) const {
   if (points_.empty() || options_.templates.redraw_px <= 0) return false;
-  // How far a few points spread over the template have moved since it was drawn.
+  return motion_px(map_from_template_, map_from_camera) < options_.templates.redraw_px;
+}
+
+double EdgeTracker::motion_px(const Rigid3& map_from_a, const Rigid3& map_from_b) const {
+  // A few points spread over the template will do.
   constexpr std::size_t kProbes = 32;
-  const Rigid3 camera_from_template = map_from_camera.inverse() * map_from_template_;
+  const Rigid3 a_from_template = map_from_a.inverse() * map_from_template_;
+  const Rigid3 b_from_template = map_from_b.inverse() * map_from_template_;
   const std::size_t stride = std::max<std::size_t>(1, points_.size() / kProbes);
   double squared = 0;
   double probes = 0;
   for (std::size_t i = 0; i < points_.size(); i += stride, ++probes) {
-    const Eigen::Vector3d ray(points_[i].ray.x(), points_[i].ray.y(), 1);
-    const Eigen::Vector3d moved = camera_from_template * (ray / points_[i].inverse_depth);
-    if (moved.z() <= 0) return false;
-    squared += (camera_.project(moved) - camera_.project(ray)).squaredNorm();
+    const Eigen::Vector3d point =
+        Eigen::Vector3d(points_[i].ray.x(), points_[i].ray.y(), 1) / points_[i].inverse_depth;
+    const Eigen::Vector3d in_a = a_from_template * point, in_b = b_from_template * point;
+    if (in_a.z() <= 0 || in_b.z() <= 0) return std::numeric_limits<double>::infinity();
+    squared += (camera_.project(in_b) - camera_.project(in_a)).squaredNorm();
   }
-  return squared < probes * options_.templates.redraw_px * options_.templates.redraw_px;
+  return std::sqrt(squared / std::max(1.0, probes));
 }
 
 std::size_t EdgeTracker::events_per_frame() const {
@@ -283,10 +290,10 @@ void EdgeTracker::write_evidence(const AlignResult& aligned, TrackedPose& pose) 
 }
 
 TrackStatus EdgeTracker::judge(const AlignResult& aligned) {
-  if (aligned.status != AlignStatus::kOk) return TrackStatus::kLost;
-  const bool suspicious = aligned.inlier_ratio < options_.min_inlier_ratio;
+  const bool is_aligned = aligned.status == AlignStatus::kOk;
+  const bool suspicious = !is_aligned || aligned.inlier_ratio < options_.min_inlier_ratio;
   suspicious_frames_ = suspicious ? suspicious_frames_ + 1 : 0;
-  return suspicious_frames_ >= kLostFrames ? TrackStatus::kLost : TrackStatus::kOk;
+  return is_aligned && !is_lost() ? TrackStatus::kOk : TrackStatus::kLost;
 }
 
 void EdgeTracker::compare_to_mean_agreement(const AlignResult& aligned) {
@@ -304,6 +311,9 @@ std::optional<TrackedPose> EdgeTracker::relocate(std::span<const Rigid3> world_f
   // better than at the last frame it must be.
   constexpr double kCandidateSigma_px = 6;
   constexpr double kMeanFraction = 0.5, kGain = 2;
+  // The few events of a frame agree by chance with poses that are a pixel or two beside a good one; a
+  // camera that is nearer to where it was tracked than this is not lost.
+  constexpr double kElsewhere_px = 4;
   const MotionModel before = motion_;
   std::optional<AlignResult> best;
   double best_agreement = std::max(kMeanFraction * mean_agreement_, kGain * last_agreement_);
@@ -321,8 +331,9 @@ std::optional<TrackedPose> EdgeTracker::relocate(std::span<const Rigid3> world_f
     is_brightness_known_ = false;
     const AlignResult aligned = align(t_ns);
     if (aligned.status != AlignStatus::kOk || agreement(aligned) <= best_agreement) continue;
-    best_agreement = agreement(aligned);
     update_motion(aligned);
+    if (motion_px(before.pose(), motion_.pose()) < kElsewhere_px) continue;
+    best_agreement = agreement(aligned);
     best = aligned;
     best_motion = motion_;
     pose.t_ns = t_ns;

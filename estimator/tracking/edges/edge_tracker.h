@@ -75,6 +75,10 @@ class EdgeTracker : public Tracker {
   /// end.
   [[nodiscard]] bool is_consistent() const { return inconsistent_frames_ < kLostFrames; }
 
+  /// Whether the last frames in a row fit the map badly or not at all: a single one is noise, and
+  /// its few events are found at many other places, too.
+  [[nodiscard]] bool is_lost() const { return suspicious_frames_ >= kLostFrames; }
+
   /// Relocalises with the newest events before the end of the last next(): starts anew from the
   /// candidate pose at which map and frame agree best, if they agree there nearly as well as on
   /// average and much better than where it was tracked. nullopt, and nothing is changed, where they
@@ -97,6 +101,9 @@ class EdgeTracker : public Tracker {
 
   void prepare_template(const Rigid3& map_from_camera);
   [[nodiscard]] bool template_fits(const Rigid3& map_from_camera) const;
+  /// By how much the points of the template move from one camera's image to another's, on average
+  /// [px]; infinite where one of them is behind a camera.
+  [[nodiscard]] double motion_px(const Rigid3& map_from_a, const Rigid3& map_from_b) const;
   [[nodiscard]] std::size_t events_per_frame() const;
   void draw_frame(TrackedPose& pose);
   [[nodiscard]] AlignResult align(TimeNs t_ns);

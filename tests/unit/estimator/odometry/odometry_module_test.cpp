@@ -139,6 +139,16 @@ TEST_F(OdometryModule, KeyframesKeepTheirTimeApart) {
     EXPECT_GE(apart[i] - apart[i - 1], std::min(0.1, apart[i] / 4) - 1e-3) << apart[i];
 }
 
+TEST_F(OdometryModule, TheLastKeyframeIsOfTheLastEvents) {
+  const auto last_made_s = [&](const std::string& name, const std::string& yaml) {
+    (void)run_odometry(request(name, yaml));
+    return read_keyframe_list(folder_.path() / name / "keyframes.yaml").back().made_s;
+  };
+  const double end_s = read_trajectory(dataset() / "groundtruth.txt").end_s();
+  EXPECT_NEAR(last_made_s("smooth", adjusted()), end_s, 0.003) << "adjusted like all before it";
+  EXPECT_LT(last_made_s("tracked", adjusted() + "smoothing_s: 0\n"), end_s - 0.006);
+}
+
 TEST_F(OdometryModule, TheBatchAdjustmentImprovesTheWholePathAndAllKeyframes) {
   (void)run_odometry(request("before"));
   (void)run_odometry(request("after", std::string(kQuick) + "batch_adjustment: events\n"));

@@ -80,6 +80,48 @@ TEST(CarriedPath, AnAccelerationLastsAsLongAgainAsItWasSeen) {
             0.7 * path.poses().back().world_from_camera.translation().norm());
 }
 
+/// From rest on, the acceleration growing; `noise_m` beside it, and back, from pose to pose.
+Trajectory hastening(double end_s, double noise_m = 0) {
+  std::vector<StampedPose> poses;
+  for (int i = 0; i * 1e-3 <= end_s + 1e-9; ++i) {
+    const double t_s = i * 1e-3;
+    Twist way = 40 * t_s * t_s * t_s * kVelocity;
+    way[0] += (i % 2 == 0 ? 1 : -1) * noise_m;
+    poses.push_back({t_s, Rigid3::exp(way)});
+  }
+  return Trajectory(std::move(poses));
+}
+
+TEST(CarriedPath, AnAccelerationThatChangesGoesOnToChange) {
+  const Trajectory before = hastening(0.05);
+  const PathAcceleration acceleration = last_acceleration(before);
+  EXPECT_LT((acceleration.rate - 12 * kVelocity).norm(), 0.02 * 12 * kVelocity.norm());
+  EXPECT_LT((acceleration.jerk - 240 * kVelocity).norm(), 0.02 * 240 * kVelocity.norm());
+  const auto error = [&](const Trajectory& path, double t_s) {
+    const Twist way = 40 * t_s * t_s * t_s * kVelocity;
+    return (Rigid3::exp(way).inverse() * path.at_clamped(t_s)).log().norm() / way.norm();
+  };
+  EXPECT_LT(error(extrapolated(before, 0.1, {}, acceleration), 0.1), 0.01);
+  // The same in steps, of which the last ends within 20 ms after the change ends.
+  Trajectory steps = before;
+  for (const double until_s : {0.07, 0.095, 0.107, 0.15})
+    steps = extrapolated(steps, until_s, {}, acceleration);
+  EXPECT_LT(error(steps, 0.1), 0.01);
+  EXPECT_LT((steps.at_clamped(0.15).inverse() *
+             extrapolated(before, 0.15, {}, acceleration).at_clamped(0.15))
+                .log()
+                .norm(),
+            0.01 * 40 * 0.15 * 0.15 * 0.15 * kVelocity.norm());
+  PathAcceleration alone = acceleration;
+  alone.jerk.setZero();
+  EXPECT_GT(error(extrapolated(before, 0.1, {}, alone), 0.1), 0.1) << "it matters";
+}
+
+TEST(CarriedPath, AChangeWithinTheNoiseDoesNotCount) {
+  EXPECT_EQ(last_acceleration(hastening(0.05, 0.01)).jerk[0], 0);
+  EXPECT_NE(last_acceleration(hastening(0.05)).jerk[0], 0);
+}
+
 TEST(CarriedPath, OfALongPathTheLastTenthOfASecondCounts) {
   EXPECT_NEAR(last_acceleration(accelerated(0.3)).until_s, 0.4, 1e-12);
   EXPECT_LT(last_acceleration(steady(0.3)).rate.norm(), 1e-6);

@@ -248,6 +248,20 @@ TEST(EdgeTracker, OneBadFrameIsNotALoss) {
     EXPECT_EQ(poses[i].status, TrackStatus::kLost);
 }
 
+TEST(EdgeTracker, FramesThatDoNotFitAreLostAndThreeOfThemTheCamera) {
+  EdgeTracker tracker = tracker_from(accurate());
+  tracker.start(recording().events);
+  ASSERT_EQ(tracker.next().value().status, TrackStatus::kOk);
+  MapPoints behind;
+  behind.x = behind.y = {0};
+  behind.z = {-1};
+  tracker.set_map(behind);
+  for (const bool is_lost : {false, false, true, true}) {
+    EXPECT_EQ(tracker.next().value().status, TrackStatus::kLost);
+    EXPECT_EQ(tracker.is_lost(), is_lost);
+  }
+}
+
 TEST(EdgeTracker, TheSeedRepeatsTheRun) {
   for (const EdgeTrackerOptions& options : {accurate(), fast()}) {
     const auto first = track(options, 5);
@@ -340,6 +354,26 @@ TEST(EdgeTracker, FindsTheCameraAgainWhereItMayBe) {
   const std::optional<TrackedPose> next = tracker.next();
   ASSERT_TRUE(next);
   EXPECT_LT(error_px(*next), 2);
+}
+
+TEST(EdgeTracker, ACameraThatIsAPixelOffIsNotElsewhere) {
+  // It agrees better a pixel beside where it was put, but goes on from there by itself.
+  EdgeTracker tracker = tracker_from(accurate());
+  tracker.start(recording().events);
+  std::optional<TrackedPose> last;
+  for (int i = 0; i < 20; ++i) last = tracker.next();
+  const auto aside = [&](double turn_rad) {
+    tracker.correct(Rigid3(so3_exp({turn_rad, 0, 0}), Eigen::Vector3d::Zero()));
+  };
+  const Rigid3 here = last->world_from_camera;
+  const double px = recording().world.camera().fx;
+  // The last frame, aligned so far away, agreed with nothing.
+  aside(30 / px);
+  for (int i = 0; i < 3; ++i) last = tracker.next();
+  aside(-28 / px);
+  EXPECT_FALSE(tracker.relocate({&here, 1}));
+  aside(-20 / px);
+  EXPECT_TRUE(tracker.relocate({&here, 1}));
 }
 
 TEST(EdgeTracker, FindsNothingWhereTheCameraIsNot) {
