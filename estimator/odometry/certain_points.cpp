@@ -11,6 +11,7 @@ constexpr std::size_t kColumns = 8, kRows = 6;
 /// Points of one part of the view. With 4 one of nine held-out worlds was lost that 8, 12 and 24
 /// hold alike.
 constexpr std::size_t kEnough = 8;
+/// Times the certain ones' sigma: what lies between that and nine times as much is the last resort.
 constexpr double kLessCertain = 3;
 
 std::size_t part_of(float at_px, int size_px, std::size_t parts) {

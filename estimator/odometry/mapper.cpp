@@ -98,7 +98,7 @@ MappingOptions relaxed(MappingOptions options) {
 
 Mapper::Mapper(const MappingOptions& options, const PinholeCamera& camera)
     : options_(options), camera_(camera) {
-  // With few edges less certain ones are taken by the rules of the map (min_edges).
+  // Where there are few edges less certain ones are taken by the rules of the map (min_edges).
   options_.depth.rays.least_points = 0;
   // Its poses are of the same events, also where a depth is estimated of a window.
   options_.depth.rays.find_delay = false;

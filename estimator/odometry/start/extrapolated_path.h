@@ -58,14 +58,14 @@ struct PathAcceleration {
   // The way is a velocity, half an acceleration and a sixth of its change:
   // d = v t + a t^2 / 2 + j t^3 / 6.
   const auto count = static_cast<Eigen::Index>(times.size());
-  Eigen::MatrixX3d powers(count, 3);
+  Eigen::MatrixX4d powers(count, 4);
   Eigen::Matrix<double, Eigen::Dynamic, 6> ways(count, 6);
   for (Eigen::Index i = 0; i < count; ++i) {
     const double t = times[static_cast<std::size_t>(i)];
-    powers.row(i) << t, t * t / 2, t * t * t / 6;
+    powers.row(i) << t, t * t / 2, t * t * t / 6, 1;
     ways.row(i) = twists[static_cast<std::size_t>(i)].transpose();
   }
-  constexpr Eigen::Index kLeast = 4, kLeastOfChange = 6;  // poses
+  constexpr Eigen::Index kLeast = 3, kLeastOfChange = 10;  // poses; fewer hardly tell their noise
   if (count < kLeast) return {};
   const auto squares = powers.leftCols<2>();
   const Eigen::MatrixXd quadratic = squares.colPivHouseholderQr().solve(ways);
@@ -74,13 +74,16 @@ struct PathAcceleration {
   acceleration.end_s = end_s;
   acceleration.until_s = end_s + length_s;
   if (count < kLeastOfChange) return acceleration;
+  // The noise of the last pose is in all ways, as the fourth unknown.
   const Eigen::MatrixXd cubic = powers.colPivHouseholderQr().solve(ways);
+  const Eigen::MatrixX3d without_cubes = powers(Eigen::all, {0, 1, 3});
+  const Eigen::MatrixXd less = without_cubes.colPivHouseholderQr().solve(ways);
   // Four sigmas, as squares beside the variance that is left.
   constexpr double kStandsOut = 16;
   for (Eigen::Index k = 0; k < 6; ++k) {
-    const double without = (ways.col(k) - squares * quadratic.col(k)).squaredNorm();
+    const double without = (ways.col(k) - without_cubes * less.col(k)).squaredNorm();
     const double with = (ways.col(k) - powers * cubic.col(k)).squaredNorm();
-    if (!(without - with > kStandsOut * with / static_cast<double>(count - 3))) continue;
+    if (!(without - with > kStandsOut * with / static_cast<double>(count - 4))) continue;
     acceleration.rate[k] = cubic(1, k) / (length_s * length_s);
     acceleration.jerk[k] = cubic(2, k) / (length_s * length_s * length_s);
   }

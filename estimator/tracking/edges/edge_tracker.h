@@ -81,8 +81,8 @@ class EdgeTracker : public Tracker {
 
   /// Relocalises with the newest events before the end of the last next(): starts anew from the
   /// candidate pose at which map and frame agree best, if they agree there nearly as well as on
-  /// average and much better than where it was tracked. nullopt, and nothing is changed, where they
-  /// do not.
+  /// average and much better than where it was tracked, and if that is some pixels elsewhere. nullopt,
+  /// and nothing is changed, where they do not.
   [[nodiscard]] std::optional<TrackedPose> relocate(std::span<const Rigid3> world_from_camera);
 
   /// Events of the next frame.
@@ -101,8 +101,8 @@ class EdgeTracker : public Tracker {
 
   void prepare_template(const Rigid3& map_from_camera);
   [[nodiscard]] bool template_fits(const Rigid3& map_from_camera) const;
-  /// By how much the points of the template move from one camera's image to another's, on average
-  /// [px]; infinite where one of them is behind a camera.
+  /// By how much the points of the template move from one camera's image to another's, the root of
+  /// the mean square [px]; infinite where one of them is behind a camera, 0 of no points.
   [[nodiscard]] double motion_px(const Rigid3& map_from_a, const Rigid3& map_from_b) const;
   [[nodiscard]] std::size_t events_per_frame() const;
   void draw_frame(TrackedPose& pose);
