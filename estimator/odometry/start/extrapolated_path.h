@@ -91,8 +91,8 @@ struct PathAcceleration {
 }
 
 /// `path` extrapolated at the velocity of its last 20 ms, or of all of it where it is shorter, and
-/// at this acceleration, which changes on, as long as that lasts, until `until_s` or just beyond; `gyroscope`, where it
-/// is not empty, measures the rotation.
+/// at this acceleration, which changes on, as long as that lasts, until `until_s` or just beyond;
+/// `gyroscope`, where it is not empty, measures the rotation.
 [[nodiscard]] inline Trajectory extrapolated(const Trajectory& path, double until_s,
                                              const Gyroscope& gyroscope,
                                              const PathAcceleration& acceleration = {}) {
