@@ -8,7 +8,7 @@ namespace saccade {
 namespace {
 
 constexpr std::size_t kColumns = 8, kRows = 6;
-/// Points of one part of the view. Of nine tuning worlds 4, 8, 12 and 24 hold the same seven or eight:
+/// Points of one part of the view. Of nine tuning worlds 4, 8, 12 and 24 hold seven or eight:
 /// single ones change by chance, and there is no trend.
 constexpr std::size_t kEnough = 8;
 /// Times the certain ones' sigma: what lies between that and nine times as much is the last resort.
