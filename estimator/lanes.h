@@ -39,6 +39,16 @@ using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
   return total(sums);
 }
 
+/// Of double precision there are half as many.
+inline constexpr std::size_t kDoubleLanes = kLanes / 2;
+using DoubleLanes = double __attribute__((vector_size(kDoubleLanes * sizeof(double))));
+
+[[nodiscard]] inline double total(const DoubleLanes& lanes) {
+  double sum = 0;
+  for (std::size_t lane = 0; lane < kDoubleLanes; ++lane) sum += lanes[lane];
+  return sum;
+}
+
 /// Dot product of whole lanes: `count` is a multiple of kLanes.
 [[nodiscard]] inline double dot(const float* a, const float* b, std::size_t count) {
   LaneSums sums{};

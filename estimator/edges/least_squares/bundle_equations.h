@@ -23,7 +23,8 @@ namespace saccade {
 
 /// The normal equations of a bundle with the edges eliminated (Triggs et al., 2000, section 6.1):
 /// of some edges at a time, a chunk, whose part of the reduced system is one product of dense
-/// matrices. The chunks are the same for any number of threads, and are added in their order.
+/// matrices. Edges that couple much the same unknowns make a chunk, wherever they stand in the
+/// bundle. The chunks are the same for any number of threads, and are added in their order.
 template <int kSupport, int kUnknowns>
 class BundleEquations {
  public:
@@ -119,14 +120,15 @@ class BundleEquations {
   using Unknowns = typename Rows::Unknowns;
   using EdgeMatrix = typename Rows::EdgeMatrix;
   static constexpr int kMotion = 6 * kSupport;
-  static constexpr std::size_t kWave = 16;  ///< chunks in memory at once
+  static constexpr std::size_t kWave = 16;        ///< chunks in memory at once
+  static constexpr std::size_t kMostEdges = 256;  ///< of a chunk, for some megabytes of rows
   using MotionVector = Eigen::Matrix<double, kMotion, 1>;
   using MotionMatrix = Eigen::Matrix<double, kMotion, kMotion>;
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-  /// Edges that couple much the same unknowns, all of which their products have rows for.
+  /// Edges that couple much the same unknowns, all of which their products have columns for.
   struct Chunk {
-    std::size_t first, last;
+    std::size_t first, last;            ///< of order_
     std::vector<std::uint32_t> blocks;  ///< ascending
     std::vector<std::uint32_t> local;   ///< place of a block among them, from blocks.front() on
     Eigen::Index size = 0;              ///< unknowns of the blocks
@@ -172,16 +174,47 @@ class BundleEquations {
     return diagonal;
   }
 
+  /// An edge of the bundle, the blocks that it couples, ascending, and these by eights.
+  struct CoupledEdge {
+    std::size_t edge;
+    std::vector<std::uint32_t> blocks, stretches;
+  };
+
+  /// What a chunk of `edges` edges that couples `blocks` blocks takes: its product of dense
+  /// matrices, and to clear, read and add a matrix of its size, as long as a product of fifty rows.
+  static double chunk_cost(std::size_t edges, std::size_t blocks) {
+    constexpr double kRowsToAdd = 50;
+    const auto size = static_cast<double>(blocks);
+    return (static_cast<double>(kUnknowns * edges) + kRowsToAdd) * size * size;
+  }
+
   void make_chunks(std::size_t first, std::size_t last) {
-    std::vector<std::uint32_t> blocks, all;
-    for (std::size_t i = first; i < last; ++i) {
-      blocks = blocks_of(rows_.bundle().edges()[i]);
+    std::vector<CoupledEdge> edges(last - first);
+    const auto couple = [&](std::size_t i) {
+      constexpr std::uint32_t kStretch = 8;
+      edges[i] = {first + i, blocks_of(first + i), {}};
+      for (const std::uint32_t block : edges[i].blocks)
+        if (edges[i].stretches.empty() || edges[i].stretches.back() != block / kStretch)
+          edges[i].stretches.push_back(block / kStretch);
+    };
+    parallel_for(edges.size(), couple, kEdgesAtOnce);
+    // Those that are seen from the same stretches of the path come together.
+    std::stable_sort(edges.begin(), edges.end(), [](const CoupledEdge& a, const CoupledEdge& b) {
+      return a.stretches < b.stretches;
+    });
+    std::vector<std::uint32_t> all;
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      const std::vector<std::uint32_t>& blocks = edges[i].blocks;
+      order_.push_back(edges[i].edge);
       const bool fits = [&] {
-        if (chunks_.empty() || i - chunks_.back().first >= kEdgesAtOnce) return false;
+        if (chunks_.empty() || i - chunks_.back().first >= kMostEdges) return false;
+        const Chunk& chunk = chunks_.back();
         all.clear();
-        std::set_union(chunks_.back().blocks.begin(), chunks_.back().blocks.end(), blocks.begin(),
-                       blocks.end(), std::back_inserter(all));
-        return 2 * all.size() <= 3 * std::min(blocks.size(), chunks_.back().blocks.size());
+        std::set_union(chunk.blocks.begin(), chunk.blocks.end(), blocks.begin(), blocks.end(),
+                       std::back_inserter(all));
+        const std::size_t before = i - chunk.first;
+        return chunk_cost(before + 1, all.size()) <=
+               chunk_cost(before, chunk.blocks.size()) + chunk_cost(1, blocks.size());
       }();
       if (fits)
         chunks_.back().blocks = all;
@@ -198,16 +231,24 @@ class BundleEquations {
     }
   }
 
-  std::vector<std::uint32_t> blocks_of(const Edge& edge) const {
-    std::vector<std::uint32_t> blocks;
+  [[nodiscard]] std::vector<std::uint32_t> blocks_of(std::size_t e) const {
+    const Edge& edge = rows_.bundle().edges()[e];
+    std::vector<std::uint32_t> first;
     for (std::size_t i = edge.first_lanes; i < edge.last_lanes; ++i)
       for (std::size_t lane = 0; lane < kEventLanes; ++lane)
         if (rows_.bundle().lanes()[i].holds(lane))
-          for (std::uint32_t k = 0; k < kSupport; ++k)
-            blocks.push_back(rows_.bundle().lanes()[i].first[lane] + k);
-    if (edge.link)
-      for (const double* node : edge.link->nodes) blocks.push_back(rows_.kept().place(node).block);
-    std::sort(blocks.begin(), blocks.end());
+          first.push_back(rows_.bundle().lanes()[i].first[lane]);
+    std::sort(first.begin(), first.end());
+    std::vector<std::uint32_t> blocks;
+    for (const std::uint32_t begin : first) {
+      std::uint32_t next = blocks.empty() ? begin : std::max(begin, blocks.back() + 1);
+      for (; next < begin + kSupport; ++next) blocks.push_back(next);
+    }
+    // Nodes of a surface come after the path.
+    if (!edge.link) return blocks;
+    const std::size_t of_path = blocks.size();
+    for (const double* node : edge.link->nodes) blocks.push_back(rows_.kept().place(node).block);
+    std::sort(blocks.begin() + static_cast<std::ptrdiff_t>(of_path), blocks.end());
     blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
     return blocks;
   }
@@ -233,10 +274,11 @@ class BundleEquations {
     product.gradient.setZero(chunk.size);
     // Sums over the events of one stretch of the path, small enough for the nearest cache.
     std::vector<MotionMatrix> squares(chunk.blocks.size(), MotionMatrix::Zero());
-    for (std::size_t e = chunk.first; e < chunk.last; ++e) {
+    for (std::size_t place = chunk.first; place < chunk.last; ++place) {
+      const std::size_t e = order_[place];
       const Edge& edge = rows_.bundle().edges()[e];
-      auto rows = cross.middleRows(kUnknowns * static_cast<Eigen::Index>(e - chunk.first),
-                                   static_cast<Eigen::Index>(kUnknowns));
+      const Eigen::Index first_row = kUnknowns * static_cast<Eigen::Index>(place - chunk.first);
+      auto rows = cross.middleRows(first_row, static_cast<Eigen::Index>(kUnknowns));
       EdgeMatrix square;
       Unknowns& gradient = eliminated_[e].gradient;
       Rows::start_with_priors(edge, point.edges[e], square, gradient);
@@ -266,8 +308,7 @@ class BundleEquations {
       square.diagonal() += eliminated_[e].damping;
       eliminated_[e].factor.compute(square);
       if (chunk.size > 0) eliminated_[e].factor.solve_lower(&rows(0, 0), chunk.size);
-      auto half = eliminated.template segment<kUnknowns>(
-          kUnknowns * static_cast<Eigen::Index>(e - chunk.first));
+      auto half = eliminated.template segment<kUnknowns>(first_row);
       half = gradient;
       eliminated_[e].factor.solve_lower(half.data(), 1);
     }
@@ -340,6 +381,7 @@ class BundleEquations {
   }
 
   const Rows& rows_;
+  std::vector<std::size_t> order_;  ///< the edges, chunk after chunk
   std::vector<Chunk> chunks_;
   std::optional<ReducedSystem> system_;
   std::vector<Eliminated> eliminated_;

@@ -9,12 +9,12 @@
 
 #include "core/camera.h"
 #include "estimator/edges/edge_residual.h"
+#include "estimator/lanes.h"
 
 namespace saccade {
 
 /// Events of one edge that are worked on together, one in each lane.
-inline constexpr std::size_t kEventLanes = 8;
-using DoubleLanes = double __attribute__((vector_size(kEventLanes * sizeof(double))));
+inline constexpr std::size_t kEventLanes = kDoubleLanes;
 
 /// An event of an edge, by the unknowns that it depends on. The path is moved at the event's time by
 ///   xi = sum over k of weight_k xi_(first + k),

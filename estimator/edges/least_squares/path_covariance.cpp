@@ -20,8 +20,11 @@ std::vector<StampedCovariance> set_sigmas(std::span<TrackedPose> poses,
   std::vector<StampedCovariance> covariances;
   for (TrackedPose& pose : poses) {
     const double t_s = seconds_from_ns(pose.t_ns);
-    covariances.push_back({t_s, covariance(t_s)});
-    pose.set_sigmas(covariances.back().covariance);
+    const Matrix6 of_pose = covariance(t_s);
+    pose.set_sigmas(of_pose);
+    // As in the trajectory's file, whose poses have increasing times: frames of a burst may share one.
+    if (pose.is_gap || (!covariances.empty() && t_s <= covariances.back().t_s)) continue;
+    covariances.push_back({t_s, of_pose});
   }
   return covariances;
 }

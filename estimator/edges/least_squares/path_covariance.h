@@ -27,7 +27,8 @@ using SplineCovariances = std::vector<Eigen::Matrix<double, 24, 24>>;
 [[nodiscard]] Matrix6 covariance_at(const SplineCovariances& covariances, std::size_t first_control,
                                     const Eigen::Matrix<double, 6, 24>& by_controls);
 
-/// Gives poses the sigmas of their covariances at their times; returns these covariances.
+/// Gives poses the sigmas of their covariances at their times. Returns these covariances, one for
+/// each pose of the trajectory: of increasing times, without those of gaps.
 [[nodiscard]] std::vector<StampedCovariance> set_sigmas(
     std::span<TrackedPose> poses, const std::function<Matrix6(double t_s)>& covariance);
 

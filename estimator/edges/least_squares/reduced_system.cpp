@@ -69,27 +69,38 @@ void ReducedSystem::set_zero() {
 }
 
 void ReducedSystem::add(std::span<const std::uint32_t> blocks, const Eigen::MatrixXd& lower) {
-  Eigen::Index column = 0;
-  for (std::size_t j = 0; j < blocks.size(); ++j) {
-    for (Eigen::Index c = begin_[blocks[j]]; c < begin_[blocks[j] + 1]; ++c, ++column) {
-      Eigen::Index row = column;
+  // Most blocks of a group follow one another: their rows are added as one. A run of them begins at
+  // `global` in the system, at `local` in the group, where it goes to `end`.
+  struct Run {
+    Eigen::Index global, local, end;
+  };
+  std::vector<Run> runs;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const Eigen::Index local = runs.empty() ? 0 : runs.back().end;
+    const Eigen::Index size = begin_[blocks[i] + 1] - begin_[blocks[i]];
+    if (i > 0 && blocks[i] == blocks[i - 1] + 1)
+      runs.back().end += size;
+    else
+      runs.push_back({begin_[blocks[i]], local, local + size});
+  }
+  for (auto own = runs.begin(); own != runs.end(); ++own)
+    for (Eigen::Index column = own->local; column < own->end; ++column) {
+      const Eigen::Index c = own->global + column - own->local;
       // Of the sparse column's entries, which are in order as the rows are.
       Eigen::Index at = is_dense_ ? 0 : sparse_.outerIndexPtr()[c];
-      for (std::size_t i = j; i < blocks.size(); ++i) {
-        const Eigen::Index first = i == j ? c : begin_[blocks[i]];
-        const Eigen::Index count = begin_[blocks[i] + 1] - first;
-        if (is_dense_) {
-          dense_.col(c).segment(first, count) += lower.col(column).segment(row, count);
-        } else {
+      for (auto run = own; run != runs.end(); ++run) {
+        const Eigen::Index row = std::max(run->local, column);
+        const Eigen::Index first = run->global + row - run->local, count = run->end - row;
+        double* sums = dense_.data() + c * dense_.rows() + first;
+        if (!is_dense_) {
           while (sparse_.innerIndexPtr()[at] < first) ++at;
-          Eigen::Map<Eigen::VectorXd>(sparse_.valuePtr() + at, count) +=
-              lower.col(column).segment(row, count);
+          sums = sparse_.valuePtr() + at;
           at += count;
         }
-        row += count;
+        const double* terms = &lower(row, column);
+        for (Eigen::Index i = 0; i < count; ++i) sums[i] += terms[i];
       }
     }
-  }
 }
 
 void ReducedSystem::add_diagonal(const Eigen::VectorXd& diagonal) {

@@ -4,6 +4,10 @@
 
 #include <vector>
 
+#include <Eigen/LU>
+
+#include "estimator/edges/edge_noise.h"
+
 namespace saccade {
 namespace {
 
@@ -56,6 +60,33 @@ TEST(EdgeFit, AFewOutliersChangeLittle) {
   const auto edge = fit_edge(events, davis_camera(), {0.42, 0.2, 0, 0.1}, kPrior, 0.05);
   ASSERT_TRUE(edge);
   EXPECT_NEAR((*edge)[0], kInverse, 4e-3);
+}
+
+TEST(EdgeFit, WeighsEveryEventAsCauchysLossDoes) {
+  // Event by event, of numbers that do and do not fill the lanes that the fit works in.
+  constexpr double kSigma_px = 0.05, kScale = EdgeNoise::kCauchyScale;
+  for (const std::size_t count : {1U, 7U, 8U, 9U, 43U}) {
+    std::vector<EdgeObservation> events = observations(60);
+    events.resize(count);
+    events[count / 2].ray.x() += 0.002;
+    EdgeUnknowns expected{0.42, 0.2, 0.01, 0.1};
+    const auto edge = fit_edge(events, davis_camera(), expected, kPrior, kSigma_px);
+    ASSERT_TRUE(edge) << count;
+    for (int i = 0; i < 4; ++i) {
+      Eigen::Matrix4d square = kPrior.sigma.cwiseAbs2().cwiseInverse().asDiagonal();
+      Eigen::Vector4d slope = square * (expected - kPrior.mean);
+      for (const EdgeObservation& event : events) {
+        EdgeDerivatives by;
+        const double r = edge_residual(event, davis_camera(), Twist::Zero(), expected, &by);
+        const double x = r / kSigma_px / kScale;
+        const double weight = 1 / (kSigma_px * kSigma_px * (1 + x * x));
+        square += weight * by.edge.transpose() * by.edge;
+        slope += weight * r * by.edge.transpose();
+      }
+      expected -= square.inverse() * slope;
+    }
+    EXPECT_LT((*edge - expected).norm(), 1e-9) << count;
+  }
 }
 
 TEST(EdgeFit, ThePriorHoldsWhatTheEventsDoNotTell) {
