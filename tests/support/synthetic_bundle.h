@@ -21,6 +21,9 @@ struct SyntheticBundleOptions {
   bool has_surface = false;
   bool is_robust = true;
   std::size_t edges = 150, events = 41;  ///< events of each edge
+  /// Share of the path from which an edge is seen: below 1, two stretches of half that length somewhere
+  /// on it.
+  double seen = 1;
 };
 
 /// A camera that moves sideways before edges at 2 to 3 m, its path and the depths known with an
@@ -65,7 +68,8 @@ struct SyntheticBundle {
     const Eigen::Vector3d point = depth * camera().ray(pixel);
     const auto segments = path.size() / 6 + 1 - kSupport;
     for (std::size_t i = 0; i < options.events; ++i) {
-      const double s = static_cast<double>(i) / static_cast<double>(options.events - 1);
+      double s = static_cast<double>(i) / static_cast<double>(options.events - 1);
+      if (options.seen < 1) s = options.seen / 2 * s + (1 - options.seen / 2) * draw(4 + i % 2);
       BundleEvent<kSupport> event;
       event.observation.view_from_camera = Rigid3::exp(
           (Twist() << 0.4 * s - 0.2, 0.1 * s * s, 0.05 * s, 0, 0.03 * s, 0.02 * s).finished());

@@ -83,6 +83,15 @@ TEST(BundleSolver, OfALongPathFindsWhatCeresFinds) {
   expect_the_solution_of_ceres(ours, reference);
 }
 
+TEST(BundleSolver, OfEdgesSeenFromPartsOfThePathFindsWhatCeresFinds) {
+  // Hardly two edges couple the same twists, and none those of its neighbour.
+  const testing::SyntheticBundleOptions parts{.twists = 60, .is_robust = false, .seen = 0.3};
+  SyntheticProblem<4, 5> ours(parts), reference(parts);
+  expect_the_solution_of_ceres(ours, reference);
+  SyntheticProblem<2, 4> ours_linear(parts), reference_linear(parts);
+  expect_the_solution_of_ceres(ours_linear, reference_linear);
+}
+
 TEST(BundleSolver, IsTheSameForAnyNumberOfThreads) {
   std::vector<std::vector<double>> paths;
   for (const int threads : {1, 2, 3}) {
