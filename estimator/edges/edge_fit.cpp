@@ -36,7 +36,7 @@ struct LineLanes {
 struct FitSums {
   DoubleLanes square[4][4]{};  ///< the lower triangle
   DoubleLanes gradient[4]{};
-  DoubleLanes least_g = DoubleLanes{} + 1;
+  DoubleLanes behind{};  ///< how many events are not in front of the view: g is not above 0
 
   /// Residuals as of EdgeLine, in pixels of the sensor; with the weights of Cauchy's loss.
   void add(const LineLanes& line, const EdgeUnknowns& edge, double sigma_px) {
@@ -58,14 +58,10 @@ struct FitSums {
       for (int j = 0; j <= i; ++j) square[i][j] += weighted * by[j];
       gradient[i] += weighted * r;
     }
-    least_g = g < least_g ? g : least_g;
+    behind += g > 0 ? DoubleLanes{} : DoubleLanes{} + 1;
   }
 
-  [[nodiscard]] bool is_in_front() const {
-    for (std::size_t lane = 0; lane < kDoubleLanes; ++lane)
-      if (!(least_g[lane] > 0)) return false;
-    return true;
-  }
+  [[nodiscard]] bool is_in_front() const { return total(behind) == 0; }
 };
 
 }  // namespace

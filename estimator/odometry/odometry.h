@@ -87,7 +87,7 @@ struct OdometryResult {
   double check_s = 0;
   // Of adjust().
   double batch_s = 0;
-  std::vector<StampedCovariance> covariances;  ///< of all poses; none where not determined
+  std::vector<StampedCovariance> covariances;  ///< of the trajectory; none where not determined
   std::optional<InertialAlignment> inertial;   ///< of kEventsAndImu, in the path's unit
   // Of kOnline.
   std::vector<double> latency_ms;  ///< from the arrival of a pose's last event to the pose

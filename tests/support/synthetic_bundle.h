@@ -21,8 +21,8 @@ struct SyntheticBundleOptions {
   bool has_surface = false;
   bool is_robust = true;
   std::size_t edges = 150, events = 41;  ///< events of each edge
-  /// Share of the path from which an edge is seen: below 1, two stretches of half that length somewhere
-  /// on it.
+  /// Share of the path from which an edge is seen: below 1, from two stretches of half that length
+  /// somewhere on it.
   double seen = 1;
 };
 

@@ -14,6 +14,7 @@
 
 #include <Eigen/Core>
 
+#include "core/process/parallel.h"
 #include "estimator/edges/least_squares/bundle_rows.h"
 #include "estimator/edges/least_squares/path_information.h"
 #include "estimator/edges/least_squares/reduced_system.h"
@@ -120,15 +121,16 @@ class BundleEquations {
   using Unknowns = typename Rows::Unknowns;
   using EdgeMatrix = typename Rows::EdgeMatrix;
   static constexpr int kMotion = 6 * kSupport;
-  static constexpr std::size_t kWave = 16;        ///< chunks in memory at once
-  static constexpr std::size_t kMostEdges = 256;  ///< of a chunk, for some megabytes of rows
+  static constexpr std::size_t kWave = 16;  ///< chunks in memory at once
+  /// Of a chunk. Windows have few hundred edges, which several threads share.
+  static constexpr std::size_t kMostEdges = 128;
   using MotionVector = Eigen::Matrix<double, kMotion, 1>;
   using MotionMatrix = Eigen::Matrix<double, kMotion, kMotion>;
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
   /// Edges that couple much the same unknowns, all of which their products have columns for.
   struct Chunk {
-    std::size_t first, last;            ///< of order_
+    std::size_t first, last;            ///< places in order_
     std::vector<std::uint32_t> blocks;  ///< ascending
     std::vector<std::uint32_t> local;   ///< place of a block among them, from blocks.front() on
     Eigen::Index size = 0;              ///< unknowns of the blocks
@@ -182,6 +184,7 @@ class BundleEquations {
 
   /// What a chunk of `edges` edges that couples `blocks` blocks takes: its product of dense
   /// matrices, and to clear, read and add a matrix of its size, as long as a product of fifty rows.
+  /// In rows times squared blocks.
   static double chunk_cost(std::size_t edges, std::size_t blocks) {
     constexpr double kRowsToAdd = 50;
     const auto size = static_cast<double>(blocks);

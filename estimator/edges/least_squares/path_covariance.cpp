@@ -22,7 +22,8 @@ std::vector<StampedCovariance> set_sigmas(std::span<TrackedPose> poses,
     const double t_s = seconds_from_ns(pose.t_ns);
     const Matrix6 of_pose = covariance(t_s);
     pose.set_sigmas(of_pose);
-    // As in the trajectory's file, whose poses have increasing times: frames of a burst may share one.
+    // As in the trajectory's file, whose poses have increasing times: frames of a burst may share
+    // theirs.
     if (pose.is_gap || (!covariances.empty() && t_s <= covariances.back().t_s)) continue;
     covariances.push_back({t_s, of_pose});
   }

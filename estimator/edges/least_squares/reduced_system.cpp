@@ -91,8 +91,10 @@ void ReducedSystem::add(std::span<const std::uint32_t> blocks, const Eigen::Matr
       for (auto run = own; run != runs.end(); ++run) {
         const Eigen::Index row = std::max(run->local, column);
         const Eigen::Index first = run->global + row - run->local, count = run->end - row;
-        double* sums = dense_.data() + c * dense_.rows() + first;
-        if (!is_dense_) {
+        double* sums = nullptr;
+        if (is_dense_) {
+          sums = &dense_(first, c);
+        } else {
           while (sparse_.innerIndexPtr()[at] < first) ++at;
           sums = sparse_.valuePtr() + at;
           at += count;

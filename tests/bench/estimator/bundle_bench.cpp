@@ -12,8 +12,8 @@ namespace {
 
 using testing::SyntheticBundle;
 
-/// Ten iterations of a joint adjustment as a batch has it: 3,600 edges of 70 events each. Items are residuals
-/// evaluated and eliminated. First argument: threads.
+/// Ten iterations of a joint adjustment as a batch has it: 3,600 edges of 70 events each. Items are
+/// residuals evaluated and eliminated. First argument: threads.
 void adjust(benchmark::State& state, BundleSolver solver, std::size_t twists, double seen) {
   set_thread_count(static_cast<int>(state.range(0)));
   SyntheticBundle<4, 5> problem(

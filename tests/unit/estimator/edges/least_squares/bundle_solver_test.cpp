@@ -96,7 +96,8 @@ TEST(BundleSolver, IsTheSameForAnyNumberOfThreads) {
   std::vector<std::vector<double>> paths;
   for (const int threads : {1, 2, 3}) {
     set_thread_count(threads);
-    SyntheticProblem<4, 5> problem({.twists = 11});
+    // Of many chunks.
+    SyntheticProblem<4, 5> problem({.twists = 60, .is_robust = false, .seen = 0.3});
     (void)solve_bundle(problem.bundle, BundleSolver::kStructured, {10, 1e-9});
     paths.push_back(problem.path);
   }
@@ -189,7 +190,7 @@ TEST(BundleSolver, WhatEdgesSayOfThePathIsWhatIsKnownBesideThePriors) {
 }
 
 TEST(BundleSolver, WhatSomeEdgesSayAddsUp) {
-  SyntheticProblem<2, 4> problem({.twists = 9});
+  SyntheticProblem<2, 4> problem({.twists = 60, .seen = 0.3});
   const auto all = path_information(problem.bundle, 0, kEdges);
   const auto first = path_information(problem.bundle, 0, 70);
   const auto second = path_information(problem.bundle, 70, kEdges);
