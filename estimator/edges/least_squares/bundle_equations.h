@@ -122,7 +122,7 @@ class BundleEquations {
   using EdgeMatrix = typename Rows::EdgeMatrix;
   static constexpr int kMotion = 6 * kSupport;
   static constexpr std::size_t kWave = 16;  ///< chunks in memory at once
-  /// Of a chunk. Windows have few hundred edges, which several threads share.
+  /// Of a chunk. A window has a few hundred edges, which several threads share.
   static constexpr std::size_t kMostEdges = 128;
   using MotionVector = Eigen::Matrix<double, kMotion, 1>;
   using MotionMatrix = Eigen::Matrix<double, kMotion, kMotion>;
@@ -183,8 +183,8 @@ class BundleEquations {
   };
 
   /// What a chunk of `edges` edges that couples `blocks` blocks takes: its product of dense
-  /// matrices, and to clear, read and add a matrix of its size, as long as a product of fifty rows.
-  /// In rows times squared blocks.
+  /// matrices, and to clear, read and add a matrix of its size, which by the bytes that are moved is
+  /// about as long as a product of fifty rows. In rows times squared blocks.
   static double chunk_cost(std::size_t edges, std::size_t blocks) {
     constexpr double kRowsToAdd = 50;
     const auto size = static_cast<double>(blocks);
@@ -194,6 +194,7 @@ class BundleEquations {
   void make_chunks(std::size_t first, std::size_t last) {
     std::vector<CoupledEdge> edges(last - first);
     const auto couple = [&](std::size_t i) {
+      // Coarse enough that edges of the same views agree, finer than keyframes are apart.
       constexpr std::uint32_t kStretch = 8;
       edges[i] = {first + i, blocks_of(first + i), {}};
       for (const std::uint32_t block : edges[i].blocks)
