@@ -6,16 +6,17 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <iterator>
 #include <numeric>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "core/process/parallel.h"
 #include "estimator/edges/least_squares/bundle_rows.h"
+#include "estimator/edges/least_squares/edge_chunks.h"
 #include "estimator/edges/least_squares/path_information.h"
 #include "estimator/edges/least_squares/reduced_system.h"
 #include "estimator/edges/least_squares/small_cholesky.h"
@@ -23,9 +24,8 @@
 namespace saccade {
 
 /// The normal equations of a bundle with the edges eliminated (Triggs et al., 2000, section 6.1):
-/// of some edges at a time, a chunk, whose part of the reduced system is one product of dense
-/// matrices. Edges that couple much the same unknowns make a chunk, wherever they stand in the
-/// bundle. The chunks are the same for any number of threads, and are added in their order.
+/// chunk after chunk (edge_chunks.h), each by one product of dense matrices; what they say is added
+/// in their order, so that the sums are the same for any number of threads.
 template <int kSupport, int kUnknowns>
 class BundleEquations {
  public:
@@ -39,10 +39,9 @@ class BundleEquations {
 
   /// Of the edges first .. last - 1 alone.
   BundleEquations(const Rows& rows, std::size_t first, std::size_t last)
-      : rows_(rows), eliminated_(rows.bundle().edges().size()) {
-    make_chunks(first, last);
+      : rows_(rows), chunks_(chunks_of(first, last)), eliminated_(rows.bundle().edges().size()) {
     std::vector<std::vector<std::uint32_t>> groups;
-    for (const Chunk& chunk : chunks_) groups.push_back(chunk.blocks);
+    for (const EdgeChunk& chunk : chunks_) groups.push_back(chunk.blocks);
     for (const std::vector<std::uint32_t>& blocks : rows.kept().factor_blocks())
       groups.push_back(blocks);
     // Whoever asks for their covariance wants neighbours, whether an event couples them or not.
@@ -122,22 +121,10 @@ class BundleEquations {
   using EdgeMatrix = typename Rows::EdgeMatrix;
   static constexpr int kMotion = 6 * kSupport;
   static constexpr std::size_t kWave = 16;  ///< chunks in memory at once
-  /// Of a chunk. A window has a few hundred edges, which several threads share.
-  static constexpr std::size_t kMostEdges = 128;
   using MotionVector = Eigen::Matrix<double, kMotion, 1>;
   using MotionMatrix = Eigen::Matrix<double, kMotion, kMotion>;
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-  /// Edges that couple much the same unknowns, all of which their products have columns for.
-  struct Chunk {
-    std::size_t first, last;            ///< places in order_
-    std::vector<std::uint32_t> blocks;  ///< ascending
-    std::vector<std::uint32_t> local;   ///< place of a block among them, from blocks.front() on
-    Eigen::Index size = 0;              ///< unknowns of the blocks
-    [[nodiscard]] Eigen::Index column(std::uint32_t block) const {
-      return 6 * static_cast<Eigen::Index>(local[block - blocks.front()]);
-    }
-  };
   /// What a chunk adds to the reduced system.
   struct Product {
     Eigen::MatrixXd matrix;
@@ -161,7 +148,7 @@ class BundleEquations {
       parallel_for(
           count, [&](std::size_t k) { multiply(chunks_[wave + k], point, damping, products[k]); });
       for (std::size_t k = 0; k < count; ++k) {
-        const Chunk& chunk = chunks_[wave + k];
+        const EdgeChunk& chunk = chunks_[wave + k];
         system_->add(chunk.blocks, products[k].matrix);
         Eigen::Index local = 0;
         for (const std::uint32_t block : chunk.blocks) {
@@ -176,63 +163,15 @@ class BundleEquations {
     return diagonal;
   }
 
-  /// An edge of the bundle, the blocks that it couples, ascending, and these by eights.
-  struct CoupledEdge {
-    std::size_t edge;
-    std::vector<std::uint32_t> blocks, stretches;
-  };
-
-  /// What a chunk of `edges` edges that couples `blocks` blocks takes: its product of dense
-  /// matrices, and to clear, read and add a matrix of its size, which by the bytes that are moved is
-  /// about as long as a product of fifty rows. In rows times squared blocks.
-  static double chunk_cost(std::size_t edges, std::size_t blocks) {
-    constexpr double kRowsToAdd = 50;
-    const auto size = static_cast<double>(blocks);
-    return (static_cast<double>(kUnknowns * edges) + kRowsToAdd) * size * size;
-  }
-
-  void make_chunks(std::size_t first, std::size_t last) {
+  [[nodiscard]] std::vector<EdgeChunk> chunks_of(std::size_t first, std::size_t last) const {
     std::vector<CoupledEdge> edges(last - first);
-    const auto couple = [&](std::size_t i) {
-      // Coarse enough that edges of the same views agree, finer than keyframes are apart.
-      constexpr std::uint32_t kStretch = 8;
-      edges[i] = {first + i, blocks_of(first + i), {}};
-      for (const std::uint32_t block : edges[i].blocks)
-        if (edges[i].stretches.empty() || edges[i].stretches.back() != block / kStretch)
-          edges[i].stretches.push_back(block / kStretch);
-    };
-    parallel_for(edges.size(), couple, kEdgesAtOnce);
-    // Those that are seen from the same stretches of the path come together.
-    std::stable_sort(edges.begin(), edges.end(), [](const CoupledEdge& a, const CoupledEdge& b) {
-      return a.stretches < b.stretches;
-    });
-    std::vector<std::uint32_t> all;
-    for (std::size_t i = 0; i < edges.size(); ++i) {
-      const std::vector<std::uint32_t>& blocks = edges[i].blocks;
-      order_.push_back(edges[i].edge);
-      const bool fits = [&] {
-        if (chunks_.empty() || i - chunks_.back().first >= kMostEdges) return false;
-        const Chunk& chunk = chunks_.back();
-        all.clear();
-        std::set_union(chunk.blocks.begin(), chunk.blocks.end(), blocks.begin(), blocks.end(),
-                       std::back_inserter(all));
-        const std::size_t before = i - chunk.first;
-        return chunk_cost(before + 1, all.size()) <=
-               chunk_cost(before, chunk.blocks.size()) + chunk_cost(1, blocks.size());
-      }();
-      if (fits)
-        chunks_.back().blocks = all;
-      else
-        chunks_.push_back({i, i, blocks, {}, 0});
-      chunks_.back().last = i + 1;
-    }
-    for (Chunk& chunk : chunks_) {
-      if (chunk.blocks.empty()) continue;
-      chunk.local.assign(chunk.blocks.back() - chunk.blocks.front() + 1, 0);
-      for (std::size_t k = 0; k < chunk.blocks.size(); ++k)
-        chunk.local[chunk.blocks[k] - chunk.blocks.front()] = static_cast<std::uint32_t>(k);
-      for (const std::uint32_t block : chunk.blocks) chunk.size += rows_.kept().size(block);
-    }
+    parallel_for(
+        edges.size(),
+        [&](std::size_t i) {
+          edges[i] = {first + i, blocks_of(first + i)};
+        },
+        kEdgesAtOnce);
+    return make_chunks(std::move(edges), kUnknowns, rows_.kept().begin());
   }
 
   [[nodiscard]] std::vector<std::uint32_t> blocks_of(std::size_t e) const {
@@ -270,18 +209,19 @@ class BundleEquations {
   }
 
   /// A chunk's normal equations with its edges eliminated.
-  void multiply(const Chunk& chunk, const Point& point, const Damping& damping, Product& product) {
-    const auto edges = static_cast<Eigen::Index>(chunk.last - chunk.first);
+  void multiply(const EdgeChunk& chunk, const Point& point, const Damping& damping,
+                Product& product) {
+    const auto edges = static_cast<Eigen::Index>(chunk.edges.size());
     RowMajor cross = RowMajor::Zero(kUnknowns * edges, chunk.size);
     Eigen::VectorXd eliminated(kUnknowns * edges);
     product.matrix.setZero(chunk.size, chunk.size);
     product.gradient.setZero(chunk.size);
     // Sums over the events of one stretch of the path, small enough for the nearest cache.
     std::vector<MotionMatrix> squares(chunk.blocks.size(), MotionMatrix::Zero());
-    for (std::size_t place = chunk.first; place < chunk.last; ++place) {
-      const std::size_t e = order_[place];
+    for (std::size_t place = 0; place < chunk.edges.size(); ++place) {
+      const std::size_t e = chunk.edges[place];
       const Edge& edge = rows_.bundle().edges()[e];
-      const Eigen::Index first_row = kUnknowns * static_cast<Eigen::Index>(place - chunk.first);
+      const Eigen::Index first_row = kUnknowns * static_cast<Eigen::Index>(place);
       auto rows = cross.middleRows(first_row, static_cast<Eigen::Index>(kUnknowns));
       EdgeMatrix square;
       Unknowns& gradient = eliminated_[e].gradient;
@@ -328,7 +268,7 @@ class BundleEquations {
     product.right = product.gradient - cross.transpose() * eliminated;
   }
 
-  void add_link(const Edge& edge, std::size_t e, const Point& point, const Chunk& chunk,
+  void add_link(const Edge& edge, std::size_t e, const Point& point, const EdgeChunk& chunk,
                 auto&& rows, EdgeMatrix& square, Product& product) {
     const typename Bundle::SurfaceLink& link = *edge.link;
     const auto [residual, weight] = rows_.link(edge, point.edges[e][0], point);
@@ -348,7 +288,7 @@ class BundleEquations {
   }
 
   /// Of any kept unknown in a chunk's products.
-  [[nodiscard]] Eigen::Index column_of(const Chunk& chunk, const double* unknown) const {
+  [[nodiscard]] Eigen::Index column_of(const EdgeChunk& chunk, const double* unknown) const {
     const KeptUnknowns::Place place = rows_.kept().place(unknown);
     Eigen::Index column = 0;
     for (const std::uint32_t block : chunk.blocks) {
@@ -385,8 +325,7 @@ class BundleEquations {
   }
 
   const Rows& rows_;
-  std::vector<std::size_t> order_;  ///< the edges, chunk after chunk
-  std::vector<Chunk> chunks_;
+  std::vector<EdgeChunk> chunks_;
   std::optional<ReducedSystem> system_;
   std::vector<Eliminated> eliminated_;
   Eigen::VectorXd right_, gradient_, damping_, step_;
