@@ -1,7 +1,6 @@
 #include <fmt/core.h>
 
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,10 +9,10 @@
 #include "apps/option_checks.h"
 #include "apps/verbs.h"
 #include "core/error.h"
-#include "core/io/run/run_record.h"
 #include "core/process/progress.h"
 #include "eval/evaluate.h"
 #include "eval/evaluate_events.h"
+#include "eval/run_folder.h"
 #include "eval/store/result_store.h"
 
 namespace saccade {
@@ -89,19 +88,14 @@ void check_comparison(const EvalOptions& options) {
     throw InputError("--data", "--events are scored against a recording: --against RECORDING");
 }
 
-/// A run that was given no poses and was not brought into metres by an inertial sensor has a world of its own.
+/// A run that found its start by itself has a world of its own.
 void say_whose_frame(const std::filesystem::path& run, const Metrics& metrics) {
-  const RunRecord record = read_run_record(run / "run.yaml");
-  if (record.module != "odometry" || !record.method_class ||
-      record.method_class->inputs.contains(MethodInput::kStart) ||
-      !metrics.values().contains("trajectory.sim3.ate_rmse_m"))
-    return;
-  std::ifstream inertial(run / "inertial.yaml");
-  for (std::string line; std::getline(inertial, line);)
-    if (line == "applied: true") return;
-  show_notice(run.string() +
-              ": its poses have a frame and a scale of their own, since it was given none at the "
-              "start: of the errors, those of trajectory.sim3 say how good it is");
+  const Alignment freedom = RunFolder::open(run).freedom();
+  if (freedom == Alignment::kNone || !metrics.get("trajectory.aligned_freedoms")) return;
+  show_notice(fmt::format(
+      "{}: no pose was given at its start, so that its world has an origin and a heading{} of its "
+      "own: errors are those {}",
+      run.string(), freedom == Alignment::kSim3 ? ", and a scale," : "", alignment_text(freedom)));
 }
 
 void evaluate(const EvalOptions& options) {

@@ -94,6 +94,21 @@ std::vector<EstimatedView> load_depth_views(const std::filesystem::path& folder)
   return with_depth;
 }
 
+std::vector<EstimatedView> load_depth_views(const RunFolder& run, const Dataset& dataset) {
+  std::vector<EstimatedView> views = load_depth_views(run.folder);
+  if (views.empty() || run.freedom() != Alignment::kSim3) return views;
+  const double scale = truth_from_estimate(score_input(run, dataset)).scale;
+  for (EstimatedView& view : views) {
+    view.world_from_camera = {view.world_from_camera.rotation(),
+                              scale * view.world_from_camera.translation()};
+    for (DepthPoint& point : view.points) {
+      point.depth_m *= scale;
+      if (point.sigma_m) *point.sigma_m *= scale;
+    }
+  }
+  return views;
+}
+
 EstimatedView load_depth_map(const std::filesystem::path& file, const Dataset& dataset,
                              double t_s) {
   return {t_s, true_pose(dataset, t_s), read_depth_map(file)};

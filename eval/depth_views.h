@@ -8,6 +8,7 @@
 #include "eval/metrics/depth_metrics.h"
 #include "eval/metrics/metrics.h"
 #include "eval/metrics/plane_fit.h"
+#include "eval/run_folder.h"
 
 namespace saccade {
 
@@ -21,6 +22,11 @@ struct EstimatedView {
 /// The views of views.yaml in `folder` that have depth: their points from cloud.ply where it states
 /// view, pixel and depth, else the pixels of their depth maps. Empty without views.yaml.
 [[nodiscard]] std::vector<EstimatedView> load_depth_views(const std::filesystem::path& folder);
+
+/// Those of a run, its world as large as the truth's where its own scale is free
+/// (TrajectoryScoreInput::freedom).
+[[nodiscard]] std::vector<EstimatedView> load_depth_views(const RunFolder& run,
+                                                          const Dataset& dataset);
 
 /// One view from a depth map (EXR: Z or the only channel [m], variance [m^2] where there is one; 0
 /// = unknown; undistorted) at `t_s`, from the true pose.

@@ -39,7 +39,7 @@ void merge(Metrics& metrics, const Metrics& more, const std::string& prefix) {
 void score_path(const TrajectoryScoreInput& input, Metrics& metrics) {
   merge(metrics, score_trajectory(input), "");
   merge(metrics, score_loss(input), "");
-  metrics.set("success", input.has_own_world ? std::nullopt : success_of(metrics));
+  metrics.set("success", success_of(metrics));
 }
 
 /// The orientations that `run` estimated, and the events that it stabilized.
@@ -88,8 +88,8 @@ Metrics score(const RunFolder& run, const Dataset& dataset,
   metrics.set("trajectory.nees", nees(run.load_covariances(), input));
   if (const auto keyframes = run.folder / "keyframes.yaml"; std::filesystem::exists(keyframes))
     merge(metrics, score_keyframes(read_keyframe_list(keyframes), input), "");
-  set_reprojection(metrics, reproject(run.load_map().positions, scored_samples(input),
-                                      dataset.camera().undistorted()));
+  set_reprojection(metrics, reproject(truth_from_estimate(input) * run.load_map().positions,
+                                      scored_samples(input), dataset.camera().undistorted()));
   return metrics;
 }
 
@@ -110,7 +110,7 @@ Metrics score_refined(const std::filesystem::path& folder, const RunFolder& run,
 
 Metrics score_run(const RunFolder& run, const Dataset& dataset,
                   const std::optional<double>& mean_depth_m) {
-  const std::vector<EstimatedView> depths = load_depth_views(run.folder);
+  const std::vector<EstimatedView> depths = load_depth_views(run, dataset);
   return score(run, dataset, depths, compare_views(depths, dataset), mean_depth_m);
 }
 
@@ -118,7 +118,7 @@ Metrics evaluate_run(const std::filesystem::path& run_folder, const EvaluateOpti
   check_depth(options.mean_depth_m);
   const RunFolder run = RunFolder::open(run_folder);
   const Dataset dataset = run.open_dataset(options.dataset);
-  const std::vector<EstimatedView> depths = load_depth_views(run.folder);
+  const std::vector<EstimatedView> depths = load_depth_views(run, dataset);
   const std::vector<DepthErrors> depth_errors = compare_views(depths, dataset);
   const std::optional<double> mean_depth_m =
       options.mean_depth_m ? options.mean_depth_m : dataset.facts().mean_depth_m;

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/config/convert.h"
+#include "core/config/document.h"
 #include "core/error.h"
 #include "core/io/files/folder_name.h"
 #include "core/io/tables/csv_reader.h"
@@ -67,6 +69,17 @@ PointCloud RunFolder::load_map() const {
   return std::filesystem::exists(file) ? read_ply(file) : PointCloud{};
 }
 
+Alignment RunFolder::freedom() const {
+  if (!std::filesystem::exists(folder / "start.yaml")) return Alignment::kNone;
+  const std::filesystem::path file = folder / "inertial.yaml";
+  if (!std::filesystem::exists(file)) return Alignment::kSim3;
+  const config::Document document = config::load(file);
+  bool is_applied = false;
+  if (const config::Entry* entry = document.root().find("applied"))
+    config::from_node(entry->value, "applied", is_applied);
+  return is_applied ? Alignment::kYaw : Alignment::kSim3;
+}
+
 std::vector<StampedCovariance> RunFolder::load_covariances() const {
   const std::filesystem::path file = folder / "covariance.txt";
   if (!std::filesystem::exists(file)) return {};
@@ -89,7 +102,7 @@ TrajectoryScoreInput score_input(const RunFolder& run, const Dataset& dataset) {
   input.truth = dataset.groundtruth();
   input.mean_depth_m = dataset.facts().mean_depth_m;
   input.window = run.record.window;
-  input.has_own_world = std::filesystem::exists(run.folder / "start.yaml");
+  input.freedom = run.freedom();
   if (run.poses) {
     input.reported.emplace();
     for (const PoseRow& row : *run.poses) {

@@ -47,6 +47,9 @@ struct RunFolder {
   [[nodiscard]] std::string name() const;
   /// Points of map.ply; empty where there is none.
   [[nodiscard]] PointCloud load_map() const;
+  /// What of its world no input told: nothing, unless it found its start by itself (start.yaml), and
+  /// less where an inertial sensor then brought it into metres and upright (inertial.yaml).
+  [[nodiscard]] Alignment freedom() const;
   /// Of covariance.txt; none where there is none.
   [[nodiscard]] std::vector<StampedCovariance> load_covariances() const;
   /// The dataset it ran on, or the one at `instead`.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "eval/metrics/statistics.h"
+#include "eval/metrics/trajectory/loss_metrics.h"
 #include "eval/table/number_text.h"
 
 namespace saccade {
@@ -21,11 +22,6 @@ std::optional<SuccessShare> success_share(std::span<const RunOutcome> runs) {
   return SuccessShare{successes / static_cast<double>(count), interval.low, interval.high, count};
 }
 
-bool has_own_world(const Metrics& metrics) {
-  return metrics.get("trajectory.mean_depth_m") && metrics.get("trajectory.duration_s") &&
-         !metrics.get("success");
-}
-
 bool was_lost(const Metrics& metrics) {
   return metrics.get("success") == 0.0 && (metrics.get("trajectory.lost_s").value_or(0) > 0 ||
                                            metrics.get("trajectory.poses") == 0.0);
@@ -36,7 +32,7 @@ std::string failure_text(const Metrics& metrics, const std::string& problem) {
   if (metrics.get("success").value_or(1) > 0) return "";
   if (metrics.get("trajectory.loss.first_s"))
     return fmt::format("lost after {} s", rounded(metrics.get("trajectory.loss.first_s")));
-  const std::optional<double> error_m = metrics.get("trajectory.none.ate_rmse_m");
+  const std::optional<double> error_m = position_error_m(metrics);
   const std::optional<double> depth_m = metrics.get("trajectory.mean_depth_m");
   if (!error_m || !depth_m) return "no pose";
   return fmt::format("ATE of {} % of the depth", rounded(100 * *error_m / *depth_m));

@@ -27,11 +27,7 @@ struct SuccessShare {
 /// known. nullopt where no run was scored.
 [[nodiscard]] std::optional<SuccessShare> success_share(std::span<const RunOutcome> runs);
 
-/// Whether a run found a start of its own, so that its world has another origin, heading and scale
-/// than the truth: only what is aligned by Sim(3) compares it.
-[[nodiscard]] bool has_own_world(const Metrics& metrics);
-
-/// Whether tracking was lost, or no pose was found. Of a run in a world of its own nobody knows.
+/// Whether tracking was lost, or no pose was found.
 [[nodiscard]] bool was_lost(const Metrics& metrics);
 
 /// What went wrong in a run with a trajectory: `problem` where there is one, "lost after 0.42 s", or

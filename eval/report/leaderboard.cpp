@@ -64,14 +64,7 @@ bool is_expected(const LeaderboardEntry& entry, const std::string& key, Entries 
   });
 }
 
-/// Whether the metric depends on where the world's origin lies and on its scale.
-bool needs_true_world(const std::string& key) {
-  return (is_of_trajectories(key) && !key.starts_with("trajectory.sim3.")) ||
-         key.starts_with("depth.");
-}
-
 bool stands_on(const LeaderboardEntry& entry, const std::string& key, Entries entries) {
-  if (needs_true_world(key) && has_own_world(entry.metrics)) return false;
   if (came_to_nothing(entry)) return is_expected(entry, key, entries);
   return score_of(entry.metrics, key).has_value();
 }

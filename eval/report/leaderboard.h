@@ -76,8 +76,7 @@ struct Leaderboard {
 /// One per metric that any of the entries has, in a fixed order, in the metric's own unit;
 /// `trajectory.nees`, best at 6, as nees_factor(). An entry with a problem stands on the boards of
 /// the metrics that other entries of its module have, or on those of trajectories where none has
-/// any. One in a world of its own (has_own_world()) stands on none of trajectories but that of
-/// Sim(3), and on none of depth. On those of trajectories and on that of speed an entry whose
+/// any. On those of trajectories and on that of speed an entry whose
 /// `success` is 0 has failed, too, so that a mean is one over successes and stands beside their
 /// share. Scores are pooled over seeds as they are; over sequences, which differ in difficulty by
 /// factors, as logarithms:

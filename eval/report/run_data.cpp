@@ -29,9 +29,11 @@ void set_errors(RunData& data, bool with_reprojection) {
     data.input.mean_depth_m = scored_m;
   data.samples = scored_samples(data.input);
   data.errors = errors_over_time(data.input);
+  data.truth_from_estimate = truth_from_estimate(data.input);
   data.map = data.run.load_map().positions;
   if (with_reprojection)
-    data.reprojection = reproject(data.map, data.samples, data.data->camera().undistorted());
+    data.reprojection = reproject(data.truth_from_estimate * data.map, data.samples,
+                                  data.data->camera().undistorted());
 }
 
 /// Takes the scores that `eval` wrote, or scores the run where they are stale.

@@ -30,6 +30,8 @@ struct RunData {
   ScoredSamples samples;
   ErrorSeries errors;
   ReprojectionSeries reprojection;
+  Similarity
+      truth_from_estimate;  ///< brings `map` and the poses of `input` to where they are scored
   std::vector<Eigen::Vector3f> map;
   std::optional<KeyframeHistory> keyframes;  ///< of an odometry run
 };

@@ -33,7 +33,11 @@ struct ViewRun {
   RunFolder run;
   std::vector<RunView> views;            ///< of views.yaml
   std::optional<std::size_t> recording;  ///< index; nullopt: its dataset is not there any more
-  bool has_own_world = false;            ///< of another origin and scale than the truth's
+  /// Brings path, map and depth to where they are shown; of a start from events alone the
+  /// alignment that it is scored after.
+  Similarity truth_from_estimate;
+
+  [[nodiscard]] Trajectory aligned_path() const;
 };
 
 /// A folder that another program is writing and that has not its name yet.

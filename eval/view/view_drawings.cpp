@@ -66,8 +66,9 @@ ViewPicture depth_picture(const ViewRecording& recording, std::size_t index) {
 ViewPicture run_depth_picture(const ViewRun& run, const ViewRecording& recording,
                               std::size_t index) {
   const RunView& view = run.views.at(index);
-  const EstimatedView found = load_depth_map(view.depth, recording.dataset, view.t_s);
-  const std::optional<DepthRange> common = run.has_own_world ? std::nullopt : recording.depth_range;
+  EstimatedView found = load_depth_map(view.depth, recording.dataset, view.t_s);
+  for (DepthPoint& point : found.points) point.depth_m *= run.truth_from_estimate.scale;
+  const std::optional<DepthRange>& common = recording.depth_range;
   return png(draw_depth_points(found.points, recording.dataset.camera().undistorted(),
                                common ? *common : depth_range(found.points), kDepthUpscale,
                                kDarkTheme));
@@ -80,8 +81,9 @@ ViewPicture run_image_picture(const ViewRun& run, std::size_t index) {
 
 std::string run_cloud(const ViewRun& run) {
   const std::filesystem::path cloud = run.run.folder / "cloud.ply";
-  return packed(std::filesystem::exists(cloud) ? read_ply(cloud).positions
-                                               : run.run.load_map().positions);
+  return packed(run.truth_from_estimate * (std::filesystem::exists(cloud)
+                                               ? read_ply(cloud).positions
+                                               : run.run.load_map().positions));
 }
 
 std::string recording_cloud(const ViewRecording& recording) {

@@ -104,7 +104,7 @@ ViewAnswer path_answer(ViewQuery& query, const ViewContent& content) {
 ViewAnswer run_path_answer(ViewQuery& query, const ViewContent& content) {
   const ViewRun& run = run_of(query, content);
   query.expect_all_read();
-  return {200, kJson, path_json(run.run.trajectory.value_or(Trajectory{}))};
+  return {200, kJson, path_json(run.aligned_path())};
 }
 
 ViewAnswer cloud_answer(ViewQuery& query, const ViewContent& content) {

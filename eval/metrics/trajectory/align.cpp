@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/check.h"
+
 namespace saccade {
 namespace {
 
@@ -109,6 +111,29 @@ Similarity with_rotation(const PairMoments& m, const Eigen::Matrix3d& rotation,
 
 }  // namespace
 
+const char* alignment_text(Alignment alignment) {
+  switch (alignment) {
+    case Alignment::kNone:
+      return "without alignment";
+    case Alignment::kYaw:
+      return "after an alignment of position and heading";
+    case Alignment::kSe3:
+      return "after an alignment by SE(3)";
+    case Alignment::kSim3:
+      return "after an alignment by Sim(3)";
+  }
+  return "";
+}
+
+std::vector<Eigen::Vector3f> operator*(const Similarity& aligned,
+                                       std::span<const Eigen::Vector3f> points) {
+  std::vector<Eigen::Vector3f> moved;
+  moved.reserve(points.size());
+  for (const Eigen::Vector3f& point : points)
+    moved.emplace_back((aligned * Eigen::Vector3d(point.cast<double>())).cast<float>());
+  return moved;
+}
+
 Similarity align_positions(std::span<const PosePair> pairs, Alignment alignment) {
   if (alignment == Alignment::kNone || pairs.empty()) return {};
   const PairMoments m = moments_of(pairs);
@@ -122,6 +147,27 @@ Similarity align(std::span<const PosePair> pairs, Alignment alignment) {
   const PairMoments m = moments_of(pairs);
   return with_rotation(m, alignment == Alignment::kYaw ? best_yaw(m) : best_rotation(m, alignment),
                        alignment);
+}
+
+Similarity align_views(std::span<const PosePair> pairs, Alignment alignment, double depth_m) {
+  SACCADE_CHECK(depth_m > 0);
+  if (alignment == Alignment::kNone || pairs.empty()) return {};
+  constexpr int kMostIterations = 100;
+  constexpr double kConverged = 1e-12;
+  const PairMoments m = moments_of(pairs);
+  Eigen::Matrix3d rotation = nearest_rotation(m.mean_rotation);
+  double scale = alignment == Alignment::kSim3 ? best_scale(m, rotation) : 1;
+  for (int i = 0; i < kMostIterations; ++i) {
+    // The squared chord of an angle a is 2 a^2 to second order: half of it is 3 - tr(R^T M).
+    const Eigen::Matrix3d wanted = 2 * scale / (depth_m * depth_m) * m.covariance + m.mean_rotation;
+    rotation = alignment == Alignment::kYaw
+                   ? rolled(Eigen::Matrix3d::Identity(), Eigen::Vector3d::UnitZ(), wanted)
+                   : nearest_rotation(wanted);
+    const double before = scale;
+    if (alignment == Alignment::kSim3) scale = best_scale(m, rotation);
+    if (std::abs(scale - before) <= kConverged * scale) break;
+  }
+  return with_rotation(m, rotation, alignment);
 }
 
 }  // namespace saccade

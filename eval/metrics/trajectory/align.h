@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <span>
+#include <vector>
 
 #include "core/rigid3.h"
 
@@ -9,7 +12,17 @@ namespace saccade {
 /// The freedom that is taken out of an estimate before it is compared with the truth.
 /// kYaw: a translation and a rotation about the world's z axis, which is vertical. It is what an
 /// estimator with an IMU cannot observe; SE(3) would also forgive a wrong vertical.
+/// Each takes out what the one before it does.
 enum class Alignment { kNone, kYaw, kSe3, kSim3 };
+
+/// Numbers that an alignment takes from the truth: 0, 4, 6, 7.
+[[nodiscard]] constexpr int freedoms_of(Alignment alignment) {
+  constexpr std::array<int, 4> kFreedoms{0, 4, 6, 7};
+  return kFreedoms[static_cast<std::size_t>(alignment)];
+}
+
+/// "without alignment", "after an alignment by Sim(3)", ...
+[[nodiscard]] const char* alignment_text(Alignment alignment);
 
 /// An estimated pose and the true one at the same time.
 struct PosePair {
@@ -30,6 +43,10 @@ struct Similarity {
   }
 };
 
+/// The points moved by `aligned`.
+[[nodiscard]] std::vector<Eigen::Vector3f> operator*(const Similarity& aligned,
+                                                     std::span<const Eigen::Vector3f> points);
+
 /// Least-squares alignment of the positions (Umeyama, PAMI 13(4), 1991):
 ///   min over s, R, t of sum |truth_i - (s R estimate_i + t)|^2
 /// with U D V^T the singular value decomposition of the covariance of truth and estimate,
@@ -46,5 +63,13 @@ struct Similarity {
 /// no better than a tenth radian. With kYaw they decide where the horizontal positions say the
 /// angle no better than that.
 [[nodiscard]] Similarity align(std::span<const PosePair> pairs, Alignment alignment);
+
+/// The alignment after which views that are `depth_m` > 0 deep differ least, positions and orientations
+/// counting alike:
+///   min over s, R, t of mean |truth_i - (s R estimate_i + t)|^2 / depth_m^2 + mean angle_i^2,
+/// the angles by their chords. The positions of a short path tell the rotation far worse than its
+/// orientations do. Alternates between the rotation and the scale.
+[[nodiscard]] Similarity align_views(std::span<const PosePair> pairs, Alignment alignment,
+                                     double depth_m);
 
 }  // namespace saccade

@@ -13,11 +13,12 @@ namespace saccade {
 /// Normalised estimation error squared (Bar-Shalom et al., 2001, 5.4.2): the mean of e^T P^-1 e
 /// over the covariances within the scored interval, e the twist of truth^-1 estimate at their
 /// times. 6 for errors that are as large as P says, more where it promises too much. nullopt
-/// without truth, estimate or a covariance that is positive definite.
+/// without truth, estimate or a covariance that is positive definite, and where the world of the
+/// estimate is free, about which its covariances say nothing.
 [[nodiscard]] inline std::optional<double> nees(std::span<const StampedCovariance> covariances,
                                                 const TrajectoryScoreInput& input) {
   const std::optional<RunRecord::Window> interval = scored_interval(input.truth, input.window);
-  if (!interval || input.estimate.empty()) return std::nullopt;
+  if (!interval || input.estimate.empty() || input.freedom != Alignment::kNone) return std::nullopt;
   double sum = 0, count = 0;
   for (const StampedCovariance& entry : covariances) {
     if (entry.t_s < interval->start_s || entry.t_s > interval->end_s) continue;

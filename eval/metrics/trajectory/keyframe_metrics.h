@@ -20,7 +20,7 @@ struct KeyframeJump {
   double rotation_deg = 0;
 };
 
-/// With E(t) = truth(t)^-1 estimate(t): the translation and the angle of E(before)^-1 E(after),
+/// With E(t) = truth(t)^-1 estimate(t), the estimate aligned as its world is free: the translation and the angle of E(before)^-1 E(after),
 /// between the last pose before a keyframe was taken and the first after it. Those that no pose
 /// surrounds, such as the first, are left out.
 [[nodiscard]] inline std::vector<KeyframeJump> keyframe_jumps(
@@ -28,8 +28,9 @@ struct KeyframeJump {
   std::vector<KeyframeJump> jumps;
   if (input.estimate.empty() || input.truth.empty()) return jumps;
   const auto poses = input.estimate.poses();
+  const Similarity aligned = truth_from_estimate(input);
   const auto error = [&](const StampedPose& pose) {
-    return input.truth.at_clamped(pose.t_s).inverse() * pose.world_from_camera;
+    return input.truth.at_clamped(pose.t_s).inverse() * (aligned * pose.world_from_camera);
   };
   for (const KeyframeEntry& keyframe : keyframes) {
     const std::size_t after = count_until(poses, keyframe.taken_s, &StampedPose::t_s);

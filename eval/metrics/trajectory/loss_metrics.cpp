@@ -79,7 +79,7 @@ std::optional<std::size_t> row_in_force(std::span<const PoseStatus> rows, double
 Metrics score_loss(const TrajectoryScoreInput& input) {
   const ErrorSeries series = errors_over_time(input);
   std::optional<double> precision, recall, delay_ms, unreported_s, reported_s, losses;
-  if (input.reported && !input.has_own_world && !series.dt_rel_percent.empty()) {
+  if (input.reported && !series.dt_rel_percent.empty()) {
     const LossCounts counts =
         count_losses(truly_lost(series), reported_lost(series, *input.reported));
     const auto interval = scored_interval(input.truth, input.window);
@@ -94,7 +94,7 @@ Metrics score_loss(const TrajectoryScoreInput& input) {
     if (counts.losses > 0) delay_ms = 1e3 * kScoreStepS * counts.delay / counts.losses;
   }
   Metrics metrics;
-  metrics.set("trajectory.loss.first_s", input.has_own_world ? std::nullopt : first_loss_s(series));
+  metrics.set("trajectory.loss.first_s", first_loss_s(series));
   metrics.set("trajectory.loss.precision", precision);
   metrics.set("trajectory.loss.recall", recall);
   metrics.set("trajectory.loss.delay_ms", delay_ms);
@@ -104,10 +104,15 @@ Metrics score_loss(const TrajectoryScoreInput& input) {
   return metrics;
 }
 
+std::optional<double> position_error_m(const Metrics& scores) {
+  const bool is_aligned = scores.get("trajectory.aligned_freedoms").has_value();
+  return scores.get(is_aligned ? "trajectory.dt_m.rmse" : "trajectory.none.ate_rmse_m");
+}
+
 std::optional<double> success_of(const Metrics& scores) {
   const std::optional<double> depth_m = scores.get("trajectory.mean_depth_m");
   if (!depth_m || !scores.get("trajectory.duration_s")) return std::nullopt;
-  const std::optional<double> error_m = scores.get("trajectory.none.ate_rmse_m");
+  const std::optional<double> error_m = position_error_m(scores);
   const std::optional<double> lost_s = scores.get("trajectory.lost_s");
   return error_m && lost_s && *error_m < kSuccessfulError * *depth_m && *lost_s == 0 ? 1 : 0;
 }

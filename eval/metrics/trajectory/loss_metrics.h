@@ -26,13 +26,17 @@ namespace saccade {
 ///   reported_s = w |R|,  count = losses, the runs of consecutive instants of L,
 ///   delay_ms = mean over the losses of the time from their begin to the first report in them, the
 /// whole length of a loss that is never reported. What has no denominator is null; all of them are
-/// where the run reports no status, no error is known, or the estimate has a world of its own.
+/// where the run reports no status or no error is known.
 /// first_s is the time from the begin of the interval to the first instant of L, whatever the run
 /// reports.
 [[nodiscard]] Metrics score_loss(const TrajectoryScoreInput& input);
 
-/// 1 where the run succeeded: its positions err by less than 1 % of the mean depth (RMSE, without
-/// alignment) and tracking was never lost; else 0, also where it found no pose. nullopt where the
+/// What success is judged by: the ATE without alignment; of a run in a world of its own
+/// (trajectory.aligned_freedoms) the RMSE over time after its alignment.
+[[nodiscard]] std::optional<double> position_error_m(const Metrics& scores);
+
+/// 1 where the run succeeded: its positions err by less than 1 % of the mean depth (position_error_m())
+/// and tracking was never lost; else 0, also where it found no pose. nullopt where the
 /// truth or the depth is missing. `scores`: those of score_trajectory().
 [[nodiscard]] std::optional<double> success_of(const Metrics& scores);
 

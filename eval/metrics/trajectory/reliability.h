@@ -25,7 +25,7 @@ using ReliabilityBins = std::array<ReliabilityBin, 10>;
 inline void add_reliability(const TrajectoryScoreInput& input, const ErrorSeries& series,
                             ReliabilityBins& bins) {
   const std::vector<bool> lost = truly_lost(series);
-  if (!input.reported || input.has_own_world) return;
+  if (!input.reported) return;
   for (std::size_t i = 0; i < lost.size(); ++i) {
     const std::optional<std::size_t> row = row_in_force(*input.reported, series.t_s[i]);
     if (!row || !(*input.reported)[*row].probability) continue;

@@ -24,8 +24,9 @@ ErrorSeries series_of(const ScoredSamples& samples, const std::optional<double>&
   return series;
 }
 
+/// Null where less is aligned than the world of the estimate is free in.
 void set_aligned(Metrics& metrics, const std::string& key, std::span<const PosePair> pairs,
-                 Alignment alignment) {
+                 Alignment alignment, Alignment freedom) {
   // The smallest error of the positions; a rotation about a straight path leaves them alone.
   const Similarity by_positions = align_positions(pairs, alignment);
   const Similarity by_poses = align(pairs, alignment);
@@ -37,7 +38,7 @@ void set_aligned(Metrics& metrics, const std::string& key, std::span<const PoseP
                       angle_between((by_poses * pair.estimated).rotation(), pair.truth.rotation()));
   }
   std::optional<double> ate, rot, scale;
-  if (!pairs.empty()) {
+  if (!pairs.empty() && alignment >= freedom) {
     ate = statistics_of(trans_m).rmse;
     rot = statistics_of(rot_deg).rmse;
     scale = by_positions.scale;
@@ -52,7 +53,9 @@ std::optional<double> error_after_begin_percent(const TrajectoryScoreInput& inpu
                                                 const RunRecord::Window& interval,
                                                 std::span<const PosePair> pairs, double path_m) {
   constexpr double kBeginS = 5;
-  if (interval.end_s - interval.start_s <= kBeginS || path_m <= 0) return std::nullopt;
+  if (interval.end_s - interval.start_s <= kBeginS || path_m <= 0 ||
+      input.freedom > Alignment::kSe3)
+    return std::nullopt;
   std::size_t begin = 0;
   for (const StampedPose& pose : input.estimate.poses())
     if (pose.t_s >= interval.start_s && pose.t_s <= interval.start_s + kBeginS) ++begin;
@@ -73,9 +76,21 @@ std::optional<double> lost_s(const ErrorSeries& series, double duration_s) {
 
 }  // namespace
 
+Similarity truth_from_estimate(const TrajectoryScoreInput& input) {
+  if (input.freedom == Alignment::kNone) return {};
+  const std::vector<PosePair> pairs = associate(input);
+  return input.mean_depth_m ? align_views(pairs, input.freedom, *input.mean_depth_m)
+                            : align(pairs, input.freedom);
+}
+
 ScoredSamples scored_samples(const TrajectoryScoreInput& input) {
   const std::optional<RunRecord::Window> interval = scored_interval(input.truth, input.window);
-  return interval ? take_samples(input.estimate, input.truth, *interval) : ScoredSamples{};
+  if (!interval) return {};
+  ScoredSamples samples = take_samples(input.estimate, input.truth, *interval);
+  if (input.freedom == Alignment::kNone) return samples;
+  const Similarity aligned = truth_from_estimate(input);
+  for (Rigid3& pose : samples.estimated) pose = aligned * pose;
+  return samples;
 }
 
 ErrorSeries errors_over_time(const TrajectoryScoreInput& input) {
@@ -113,13 +128,16 @@ Metrics score_trajectory(const TrajectoryScoreInput& input) {
   set_statistics(metrics, "trajectory.dtheta_deg", series.dtheta_deg);
 
   const std::vector<PosePair> pairs = associate(input);
-  set_aligned(metrics, "trajectory.none", pairs, Alignment::kNone);
-  set_aligned(metrics, "trajectory.yaw", pairs, Alignment::kYaw);
-  set_aligned(metrics, "trajectory.se3", pairs, Alignment::kSe3);
-  set_aligned(metrics, "trajectory.sim3", pairs, Alignment::kSim3);
+  set_aligned(metrics, "trajectory.none", pairs, Alignment::kNone, input.freedom);
+  set_aligned(metrics, "trajectory.yaw", pairs, Alignment::kYaw, input.freedom);
+  set_aligned(metrics, "trajectory.se3", pairs, Alignment::kSe3, input.freedom);
+  set_aligned(metrics, "trajectory.sim3", pairs, Alignment::kSim3, input.freedom);
   set_relative_errors(metrics, samples);
   metrics.set("trajectory.drift_percent", drift_percent(samples));
 
+  metrics.set("trajectory.aligned_freedoms", input.freedom == Alignment::kNone
+                                                 ? std::nullopt
+                                                 : std::optional(freedoms_of(input.freedom)));
   metrics.set("trajectory.poses", static_cast<double>(input.estimate.size()));
   metrics.set("trajectory.mean_depth_m", input.mean_depth_m);
   std::optional<double> covered, duration, path, lost, reported, after_begin;

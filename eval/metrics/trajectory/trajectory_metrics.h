@@ -26,9 +26,10 @@ struct TrajectoryScoreInput {
   std::optional<double> mean_depth_m;  ///< d of dt_rel (thesis 8.1), > 0
   /// In order of time; nullopt: the estimator reports no status.
   std::optional<std::vector<PoseStatus>> reported;
-  /// The estimate's world is not the truth's, as its start was found without any pose given: without
-  /// an alignment the two cannot be compared.
-  bool has_own_world = false;
+  /// What no input says of the estimate's world, so that it is taken from the truth before errors
+  /// are taken: nothing where poses were given at the start; kSim3 after a start from events alone,
+  /// kYaw where an inertial sensor then told metres and the vertical.
+  Alignment freedom = Alignment::kNone;
 };
 
 /// Errors over time on the 1 ms grid of the scored interval.
@@ -39,18 +40,23 @@ struct ErrorSeries {
   std::vector<double> dtheta_deg;      ///< angle between q and q_gt (thesis 8.2)
 };
 
-/// Estimate and truth on the grid of the scored interval; empty where one of them is missing.
+/// The alignment of `input.freedom` by all poses in the scored interval, as align_views() where a
+/// depth is known; the identity without one.
+[[nodiscard]] Similarity truth_from_estimate(const TrajectoryScoreInput& input);
+
+/// Estimate, after that alignment, and truth on the grid of the scored interval; empty where one of
+/// them is missing.
 [[nodiscard]] ScoredSamples scored_samples(const TrajectoryScoreInput& input);
 
-/// Errors without alignment; empty where there is no estimate or nothing to score against.
+/// Their errors; empty where there is no estimate or nothing to score against.
 [[nodiscard]] ErrorSeries errors_over_time(const TrajectoryScoreInput& input);
 
 /// Every key below "trajectory." except reprojection_px, nees and loss (see docs/metrics.md for the definitions);
 /// what cannot be computed is null. The set of keys never depends on the input.
 [[nodiscard]] Metrics score_trajectory(const TrajectoryScoreInput& input);
 
-/// Estimated poses inside the scored interval with the truth interpolated at their times: what ATE
-/// is computed over.
+/// Estimated poses, as they are, inside the scored interval with the truth interpolated at their
+/// times: what ATE is computed over.
 [[nodiscard]] std::vector<PosePair> associate(const TrajectoryScoreInput& input);
 
 /// Time between a lost pose and the next one that is not lost, cut to the interval [s].

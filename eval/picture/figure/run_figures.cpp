@@ -40,7 +40,8 @@ std::vector<Eigen::Vector3d> positions(const Trajectory& trajectory) {
 /// Thesis figs. 8.4 to 8.7, 8.16 and 8.17.
 FigureRows trajectory_figure(const FigureInput& input) {
   if (!input.run.trajectory || input.run.trajectory->empty()) return {};
-  const ErrorSeries errors = errors_over_time(score_input(input.run, input.dataset));
+  const TrajectoryScoreInput scores = score_input(input.run, input.dataset);
+  const ErrorSeries errors = errors_over_time(scores);
   if (errors.t_s.empty()) return {};
   const bool has_depth = !errors.dt_rel_percent.empty();
   LineChart chart{.x_label = "time [s]", .names = {}, .panels = {}, .is_over_time = true};
@@ -49,11 +50,13 @@ FigureRows trajectory_figure(const FigureInput& input) {
   chart.panels.push_back({"rotation error [deg]", {curve(errors.t_s, errors.dtheta_deg)}});
   ImageRgb8 chart_image = draw(chart, input.theme);
   const std::vector<Eigen::Vector3d> truth = positions(input.dataset.groundtruth());
-  const std::vector<Eigen::Vector3d> estimate = positions(*input.run.trajectory);
+  std::vector<Eigen::Vector3d> estimate = positions(*input.run.trajectory);
+  const Similarity aligned = truth_from_estimate(scores);
+  for (Eigen::Vector3d& position : estimate) position = aligned * position;
   return {
       {{"truth (grey), estimate (orange)",
         draw_trajectory(truth, estimate, chart_image.height(), chart_image.height(), input.theme)},
-       {"errors without alignment", std::move(chart_image)}}};
+       {std::string("errors ") + alignment_text(scores.freedom), std::move(chart_image)}}};
 }
 
 FigureRows tracking_figure(const FigureInput& input) {
@@ -84,7 +87,7 @@ FigureRows keypoints_figure(const FigureInput& input) {
 
 /// Figs. 8.9 to 8.11: the first view, and all points from above.
 FigureRows cloud_figure(const FigureInput& input) {
-  const std::vector<EstimatedView> views = load_depth_views(input.run.folder);
+  const std::vector<EstimatedView> views = load_depth_views(input.run, input.dataset);
   if (views.empty()) return {};
   const PinholeCamera& camera = input.dataset.camera();
   std::vector<CaptionedPicture> row =

@@ -92,7 +92,7 @@ std::string run_page_data(const RunData& data) {
   SACCADE_CHECK(!data.samples.t_s.empty());
   const ScoredSamples& s = data.samples;
   Json run{{"id", data.id}, {"name", data.run.name()}};
-  if (!data.map.empty()) run["cloud"] = cloud(data.map);
+  if (!data.map.empty()) run["cloud"] = cloud(data.truth_from_estimate * data.map);
   const std::size_t stride = (s.t_s.size() + kMaxPathPoints - 1) / kMaxPathPoints;
   for (const char* name : {"times", "truth", "estimate"}) run[name] = Json::array();
   for (std::size_t i = 0; i < s.t_s.size(); i += stride) {

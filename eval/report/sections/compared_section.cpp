@@ -72,7 +72,7 @@ PageChart distribution_over_time(std::span<const MethodRuns> methods, const Time
 std::vector<double> relative_depth_errors(const RunData& run) {
   std::vector<double> values;
   if (!run.data || !run.metrics.get("depth.points")) return values;
-  for (const DepthErrors& view : compare_views(load_depth_views(run.run.folder), *run.data))
+  for (const DepthErrors& view : compare_views(load_depth_views(run.run, *run.data), *run.data))
     for (const DepthError& point : view.best) values.push_back(100 * point.relative);
   return values;
 }

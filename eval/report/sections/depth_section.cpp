@@ -102,7 +102,7 @@ std::string cloud(const RunData& data, const std::vector<EstimatedView>& views) 
 
 std::string depth_section(const RunData& data) {
   if (!data.data) return "";
-  const std::vector<EstimatedView> views = load_depth_views(data.run.folder);
+  const std::vector<EstimatedView> views = load_depth_views(data.run, *data.data);
   if (views.empty()) return "";
   const std::vector<DepthErrors> errors = compare_views(views, *data.data);
   std::string html = views_table(data, errors) +

@@ -88,7 +88,7 @@ std::vector<std::pair<std::string, std::vector<WorstWindow>>> by_method(
   for (const RunData& run : runs) {
     const bool can_be_drawn =
         run.data && !run.data->events_file().empty() && !run.input.estimate.empty();
-    if (!can_be_drawn || run.errors.t_s.empty() || run.input.has_own_world) continue;
+    if (!can_be_drawn || run.errors.t_s.empty()) continue;
     auto method = std::find_if(methods.begin(), methods.end(),
                                [&](const auto& item) { return item.first == run.method; });
     if (method == methods.end()) method = methods.insert(methods.end(), {run.method, {}});

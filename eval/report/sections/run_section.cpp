@@ -162,9 +162,13 @@ std::string accuracy_details(const RunData& data) {
   const Metrics& m = data.metrics;
   return "<div class=\"grid\"><div>" + alignment_table(data) +
          fmt::format(
-             "<p class=\"note\">Drift at the end {} % of the path. Lost for {} s by the truth, "
+             "<p class=\"note\">{}Drift at the end {} % of the path. Lost for {} s by the truth, "
              "{} s by its own report, {} s of the loss unreported. Worst instant of the map in the "
              "image: {} px RMS.</p>",
+             data.input.freedom == Alignment::kNone
+                 ? ""
+                 : fmt::format("No pose was given at the start: errors are those {}. ",
+                               alignment_text(data.input.freedom)),
              significant(m.get("trajectory.drift_percent")),
              significant(m.get("trajectory.lost_s")),
              significant(m.get("trajectory.reported_lost_s")),

@@ -35,8 +35,7 @@ auto& item_of(Items& items, const std::string& name) {
 std::vector<SequenceErrors> collect(std::span<const RunData> runs) {
   std::vector<SequenceErrors> sequences;
   for (const RunData& run : runs) {
-    // Relative errors need no common origin, but a run of its own scale has none of them.
-    if (run.samples.t_s.empty() || run.input.has_own_world) continue;
+    if (run.samples.t_s.empty()) continue;
     auto sequence = std::find_if(sequences.begin(), sequences.end(),
                                  [&](const auto& item) { return item.sequence == run.dataset; });
     if (sequence == sequences.end())

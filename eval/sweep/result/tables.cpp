@@ -192,11 +192,19 @@ std::string method_text(const SweepResults& results) {
   text += results.sweep.timing ? ", one run at a time on one thread. "
                                : "; other runs may have used the machine at the same time. ";
   text += "The best value of each column is bold within a dataset.\n";
-  std::set<std::string> machines, versions;
+  std::set<std::string> machines, versions, aligned;
   for (const SweepRow& row : results.rows) {
     if (!row.machine.empty()) machines.insert(row.machine);
     if (!row.tool_version.empty()) versions.insert(row.tool_version);
+    if (row.metrics.get("trajectory.aligned_freedoms").value_or(0) > 0)
+      aligned.insert(row.job->point.configuration);
   }
+  if (!aligned.empty())
+    text += fmt::format(
+        "Errors of {} are after an alignment, since no pose was given at the start: by Sim(3) (7 "
+        "aligned freedoms), or of position and heading (4) where an inertial sensor told metres "
+        "and the vertical.\n",
+        fmt::join(aligned, ", "));
   for (const std::string& machine : machines) text += "Machine: " + machine + ".\n";
   for (const std::string& version : versions) text += "saccade " + version + ".\n";
   return text + "\n";

@@ -227,7 +227,7 @@ def score(folder):
     lost = (100 * translation.error / MEAN_DEPTH_M > 5) | (rotation.error > 5)
     scores |= {"lost_s": float((end - start) * np.mean(lost)), "reported_lost_s": None,
                "coverage": coverage(estimate.times, start, end), "duration_s": float(end - start),
-               "poses": len(estimate.times), "mean_depth_m": MEAN_DEPTH_M}
+               "poses": len(estimate.times), "mean_depth_m": MEAN_DEPTH_M, "aligned_freedoms": None}
     covariance = folder / "covariance.txt"
     scores["nees"] = nees(truth, estimate, covariance) if covariance.exists() else None
     return {k: scores[k] if scores[k] is None or isinstance(scores[k], int) else float(scores[k]) for k in sorted(scores)}

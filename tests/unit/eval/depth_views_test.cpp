@@ -8,6 +8,7 @@
 #include "core/io/images/exr_file.h"
 #include "core/io/ply_file.h"
 #include "core/io/run/view_list.h"
+#include "core/io/trajectory_file.h"
 #include "eval/evaluate.h"
 #include "eval/report/report.h"
 #include "tests/support/error_of.h"
@@ -80,6 +81,23 @@ TEST_F(DepthViews, ARunIsScoredFromItsMaps) {
   EXPECT_TRUE(metrics.get("depth.two_planes.angle_deg"));
   EXPECT_THAT(testing::read_file(fake() / "depth_views.csv"), HasSubstr("strict.rel_median"));
   EXPECT_THAT(format_metrics(metrics, "fake"), HasSubstr("best of 3 x 3"));
+}
+
+TEST_F(DepthViews, AWorldOfItsOwnScaleIsAsLargeAsTheTruth) {
+  const Dataset data = Dataset::open(dataset());
+  std::vector<StampedPose> poses;
+  for (const StampedPose& pose : data.groundtruth().poses())
+    poses.push_back({pose.t_s, Rigid3(pose.world_from_camera.rotation(),
+                                      pose.world_from_camera.translation() / 4)});
+  write_tum_trajectory(fake() / "trajectory.txt", poses);
+  const double found_m = load_depth_views(fake())[0].points[0].depth_m;
+  EXPECT_EQ(load_depth_views(RunFolder::open(fake()), data)[0].points[0].depth_m, found_m);
+
+  folder_.write("fake/start.yaml", "");
+  const EstimatedView view = load_depth_views(RunFolder::open(fake()), data)[0];
+  EXPECT_NEAR(view.points[0].depth_m, 4 * found_m, 1e-6);
+  EXPECT_NEAR(*view.points[0].sigma_m, 0.4, 1e-6);
+  EXPECT_NEAR(*evaluate_run(fake()).get("depth.strict.rel_median"), 4 * kScale - 1, 0.01);
 }
 
 TEST_F(DepthViews, TheCloudOfARunHasTheExactPositions) {

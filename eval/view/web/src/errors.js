@@ -12,7 +12,7 @@ export async function showErrors(section, { runs }, clock) {
   for (const { run, errors } of scored)
     for (const [id, series] of Object.entries(errors.series)) {
       if (!kinds.has(id)) kinds.set(id, { series, curves: [] });
-      kinds.get(id).curves.push({ name: run.own_world ? `${run.name} (world of its own)` : run.name, colour: run.colour, x: series.t, y: series.v });
+      kinds.get(id).curves.push({ name: run.is_aligned ? `${run.name} (aligned)` : run.name, colour: run.colour, x: series.t, y: series.v });
     }
   for (const { series, curves } of kinds.values()) {
     const box = document.createElement("div");

@@ -13,7 +13,7 @@ function recordingText(recording) {
 }
 
 const runText = (run) =>
-  `${run.name} (${run.module}, ${number(run.poses, "poses")}${run.own_world ? ", in a world of its own" : ""}${run.problem ? `, ${run.problem}` : ""})`;
+  `${run.name} (${run.module}, ${number(run.poses, "poses")}${run.is_aligned ? ", aligned to the truth" : ""}${run.problem ? `, ${run.problem}` : ""})`;
 
 /// One paragraph about what the page has, and what it lacks.
 export function showFacts(box, { recording, runs }) {

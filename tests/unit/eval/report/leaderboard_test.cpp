@@ -168,22 +168,6 @@ TEST(Leaderboard, ARunWithoutAPoseIsAFailureAndNotAbsent) {
   EXPECT_EQ(cell(leaderboard_table(board), 1, "walls").text, "no pose");
 }
 
-// Its errors without alignment are those of another origin and scale.
-TEST(Leaderboard, ARunInAWorldOfItsOwnIsComparedAfterSim3Alone) {
-  LeaderboardEntry own = judged("own start", "walls", 80, 0.8, 1);
-  own.metrics.set("success", std::nullopt);
-  own.metrics.set("trajectory.duration_s", 2);
-  own.metrics.set("trajectory.sim3.ate_rmse_m", 0.001);
-  LeaderboardEntry given = judged("given start", "walls", 0.5, 0.005);
-  given.metrics.set("trajectory.sim3.ate_rmse_m", 0.002);
-  const std::vector<Leaderboard> boards = leaderboards(std::vector{own, given});
-  ASSERT_EQ(boards.size(), 2U);
-  EXPECT_EQ(methods_of(boards[0]), std::vector<std::string>{"given start"});
-  EXPECT_EQ(boards[1].key, "trajectory.sim3.ate_rmse_m");
-  EXPECT_EQ(methods_of(boards[1]), (std::vector<std::string>{"own start", "given start"}));
-  EXPECT_FALSE(boards[1].rows[0].success) << "nobody knows where it was lost";
-}
-
 TEST(Leaderboard, RanksWithinAClassAlone) {
   std::vector<LeaderboardEntry> entries{of_class(scored("given a map", "walls", 0.1), kTracking),
                                         of_class(scored("no map", "walls", 0.4), kOdometry),

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/random.h"
+
 namespace saccade {
 namespace {
 
@@ -171,6 +173,72 @@ TEST(Align, TurnsOrientationsByItsRotationAlone) {
   const Rigid3 moved = s * pose;
   EXPECT_LT((moved.translation() - Vector3d(0, 3, 1)).norm(), 1e-12);
   EXPECT_LT(angle_between(moved.rotation(), about({0, 0, 1}, 2 * kPi / 3)), 1e-12);
+}
+
+double view_cost(std::span<const PosePair> pairs, const Similarity& aligned, double depth_m) {
+  double sum = 0;
+  for (const PosePair& pair : pairs) {
+    const Rigid3 pose = aligned * pair.estimated;
+    sum += (pose.translation() - pair.truth.translation()).squaredNorm() / (depth_m * depth_m);
+    sum += (pose.rotation_matrix() - pair.truth.rotation_matrix()).squaredNorm() / 2;
+  }
+  return sum;
+}
+
+TEST(AlignViews, LeavesLeastOfPositionsAndOrientationsTogether) {
+  // Of a path of decimetres the positions say the rotation to a degree, the orientations to a tenth.
+  const Random random(5);
+  std::uint64_t drawn = 0;
+  const auto normal = [&] { return random.normal(0, drawn++); };
+  std::vector<PosePair> pairs;
+  const Similarity moved{2.5, Rigid3(so3_exp({0.4, -1, 2}), {1, 2, 3})};
+  for (int i = 0; i < 50; ++i) {
+    const Rigid3 estimated(so3_exp({0.01 * i, 0, 0.1}),
+                           {0.002 * i, 0.02 * std::sin(0.2 * i), 0.01 * std::cos(0.3 * i)});
+    const Vector3d turn{normal(), normal(), normal()};
+    const Vector3d shift{normal(), normal(), normal()};
+    const Rigid3 truth = moved * estimated;
+    pairs.push_back({estimated, Rigid3(so3_exp(0.002 * turn) * truth.rotation(),
+                                       truth.translation() + 0.005 * shift)});
+  }
+  constexpr double kDepth_m = 3;
+  for (const Alignment alignment : {Alignment::kSim3, Alignment::kSe3, Alignment::kYaw}) {
+    const Similarity found = align_views(pairs, alignment, kDepth_m);
+    const double least = view_cost(pairs, found, kDepth_m);
+    for (int i = 0; i < 7; ++i)
+      for (const double step : {-1e-4, 1e-4}) {
+        const bool is_free = alignment == Alignment::kSim3 ||
+                             (alignment == Alignment::kSe3 && i < 6) ||
+                             (alignment == Alignment::kYaw && (i < 3 || i == 5));
+        if (!is_free) continue;
+        Twist twist = Twist::Zero();
+        if (i < 6) twist[i] = step;
+        Similarity other = found;
+        if (i == 6) other.scale *= 1 + step;
+        const Rigid3 nudge(so3_exp(twist.tail<3>()), twist.head<3>());
+        other.rigid = nudge * other.rigid;
+        EXPECT_GE(view_cost(pairs, other, kDepth_m), least) << i << " " << step;
+      }
+  }
+  const Similarity found = align_views(pairs, Alignment::kSim3, kDepth_m);
+  EXPECT_LT(angle_between(found.rigid.rotation(), moved.rigid.rotation()), 0.002);
+  EXPECT_GT(angle_between(align(pairs, Alignment::kSim3).rigid.rotation(), moved.rigid.rotation()),
+            0.004)
+      << "by positions";
+  EXPECT_NEAR(found.scale, 2.5, 0.1);
+}
+
+TEST(AlignViews, OfPositionsAndOrientationsThatAgreeIsExact) {
+  std::vector<PosePair> pairs;
+  const Similarity moved{0.2, Rigid3(so3_exp({0, 3, 0.1}), {-4, 0, 1})};
+  for (int i = 0; i < 10; ++i) {
+    const Rigid3 estimated(so3_exp({0.1 * i, 0.2, 0}), {0.1 * i, 0.01 * i * i, 0});
+    pairs.push_back({estimated, moved * estimated});
+  }
+  const Similarity found = align_views(pairs, Alignment::kSim3, 1);
+  EXPECT_NEAR(found.scale, 0.2, 1e-9);
+  EXPECT_LT(angle_between(found.rigid.rotation(), moved.rigid.rotation()), 1e-6);
+  EXPECT_TRUE(align_views({}, Alignment::kSim3, 1).rigid.translation().isZero());
 }
 
 }  // namespace

@@ -35,6 +35,9 @@ TEST(Nees, IsNoneWithoutCovarianceTruthOrEstimate) {
   input = some_input();
   input.estimate = {};
   EXPECT_FALSE(nees(entries, input));
+  input = some_input();
+  input.freedom = Alignment::kSim3;
+  EXPECT_FALSE(nees(entries, input)) << "covariances say nothing of where a world lies";
 }
 
 }  // namespace

@@ -104,15 +104,14 @@ TEST(LossMetrics, WhatHasNoDenominatorIsNull) {
   EXPECT_NEAR(loss(score_loss(silent), "delay_ms"), (201.0 + 101) / 2, 1e-9);
 }
 
-TEST(LossMetrics, AreNullWithoutStatusDepthTruthPoseOrCommonWorld) {
+TEST(LossMetrics, AreNullWithoutStatusDepthTruthOrPose) {
   const TrajectoryScoreInput full = twice_lost();
-  for (int missing = 0; missing < 5; ++missing) {
+  for (int missing = 0; missing < 4; ++missing) {
     TrajectoryScoreInput input = full;
     if (missing == 0) input.reported.reset();
     if (missing == 1) input.mean_depth_m.reset();
     if (missing == 2) input.truth = {};
     if (missing == 3) input.estimate = {};
-    if (missing == 4) input.has_own_world = true;
     const Metrics m = score_loss(input);
     EXPECT_EQ(m.values().size(), 7U);
     for (const auto& [key, value] : m.values()) {

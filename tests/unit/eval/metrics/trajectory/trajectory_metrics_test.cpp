@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "eval/metrics/trajectory/loss_metrics.h"
 #include "tests/unit/eval/metrics/hand_made.h"
 
 namespace saccade {
@@ -190,6 +191,65 @@ TEST(ErrorSeries, FollowsTheGrid) {
   ASSERT_EQ(series.t_s.size(), 1001U);
   EXPECT_NEAR(series.dt_m[500], 0.005, 1e-9);
   EXPECT_NEAR(series.dt_rel_percent[500], 0.25, 1e-9);
+}
+
+/// On a bent path, as an estimate in another world has it: truth = moved * estimate.
+TrajectoryScoreInput in_another_world(const Similarity& moved) {
+  const Rigid3 back = moved.rigid.inverse();
+  std::vector<StampedPose> truth, estimate;
+  for (int i = 0; i <= 100; ++i) {
+    const double t_s = 0.01 * i;
+    const Rigid3 pose(so3_exp({0.2 * t_s, 0.1, 0}),
+                      {std::cos(3 * t_s), std::sin(3 * t_s), 0.5 * t_s * t_s});
+    truth.push_back({t_s, pose});
+    estimate.push_back({t_s, Rigid3(back.rotation() * pose.rotation(),
+                                    (back * pose.translation()) / moved.scale)});
+  }
+  return {.estimate = Trajectory(estimate),
+          .truth = Trajectory(truth),
+          .window = {},
+          .mean_depth_m = 2,
+          .reported = {{{0, false}}}};
+}
+
+TEST(ScoreTrajectory, AWorldOfItsOwnIsAlignedFirst) {
+  TrajectoryScoreInput input =
+      in_another_world({3, Rigid3(so3_exp({0.3, 1.2, -0.7}), {1, -2, 0.5})});
+  EXPECT_GT(value(score_trajectory(input), "lost_s"), 0.9) << "unless somebody says so";
+  EXPECT_FALSE(score_trajectory(input).get("trajectory.aligned_freedoms"));
+  input.freedom = Alignment::kSim3;
+  const Metrics m = score_trajectory(input);
+  EXPECT_NEAR(value(m, "dt_rel_percent.max"), 0, 1e-6);
+  EXPECT_NEAR(value(m, "dtheta_deg.max"), 0, 1e-5);
+  EXPECT_NEAR(value(m, "drift_percent"), 0, 1e-6);
+  EXPECT_NEAR(value(m, "rpe.length_20_percent.trans_percent"), 0, 1e-6);
+  EXPECT_EQ(value(m, "lost_s"), 0);
+  EXPECT_EQ(value(m, "aligned_freedoms"), 7);
+  EXPECT_NEAR(value(m, "sim3.scale"), 3, 1e-9) << "of the estimate as it is";
+  for (const char* key : {"none", "yaw", "se3"})
+    EXPECT_FALSE(m.get(std::string("trajectory.") + key + ".ate_rmse_m")) << key;
+  EXPECT_EQ(success_of(m), 1);
+  EXPECT_EQ(score_loss(input).get("trajectory.loss.unreported_s"), 0);
+}
+
+TEST(ScoreTrajectory, OfAWorldThatIsUprightAndInMetresOnlyTheHeadingIsAligned) {
+  TrajectoryScoreInput turned = in_another_world({1, Rigid3(so3_exp({0, 0, 2}), {1, 2, 3})});
+  turned.freedom = Alignment::kYaw;
+  const Metrics m = score_trajectory(turned);
+  EXPECT_NEAR(value(m, "dt_rel_percent.max"), 0, 1e-6);
+  EXPECT_EQ(value(m, "aligned_freedoms"), 4);
+  EXPECT_FALSE(m.get("trajectory.none.ate_rmse_m"));
+  EXPECT_NEAR(value(m, "yaw.ate_rmse_m"), 0, 1e-9);
+  EXPECT_EQ(success_of(m), 1);
+
+  // Neither a wrong vertical nor a wrong scale is forgiven.
+  for (const Similarity& wrong : {Similarity{1, Rigid3(so3_exp({0.2, 0, 2}), {1, 2, 3})},
+                                  Similarity{1.1, Rigid3(so3_exp({0, 0, 2}), {1, 2, 3})}}) {
+    TrajectoryScoreInput input = in_another_world(wrong);
+    input.freedom = Alignment::kYaw;
+    EXPECT_GT(value(score_trajectory(input), "dt_rel_percent.mean"), 2);
+    EXPECT_EQ(success_of(score_trajectory(input)), 0);
+  }
 }
 
 }  // namespace

@@ -73,6 +73,13 @@ TEST_F(SweepTables, AnExternalProgramThatCrashedIsARowWithItsReason) {
                     HasSubstr("- recorded_fast_b-1_seed-1: timed out: after 3 s\n")));
 }
 
+TEST_F(SweepTables, SayWhichErrorsAreAfterAnAlignment) {
+  fill("a.b: [1, 2]");
+  EXPECT_THAT(sweep_markdown(results_, {}, {}), Not(HasSubstr("alignment")));
+  results_.rows[0].metrics.set("trajectory.aligned_freedoms", 7);
+  EXPECT_THAT(sweep_markdown(results_, {}, {}), HasSubstr("Errors of fast are after an alignment"));
+}
+
 TEST_F(SweepTables, FailuresStandFirstWithTheirReasons) {
   fill("a.b: [1, 2]");
   results_.rows[0].metrics.set("trajectory.lost_s", 0.5);
