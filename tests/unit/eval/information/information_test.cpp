@@ -137,6 +137,25 @@ TEST(LineObservation, HasTheDerivativesOfThePlaceAcrossTheLine) {
       Eigen::Vector2d::Zero());
 }
 
+TEST(Observe, EventsOfAStrongEdgeSayBetterWhereItIs) {
+  const TemporaryFolder folder;
+  const Dataset dataset = recording(folder, "slide", slide, 0.15);
+  const TrueEdges edges = find_true_edges(dataset, 0.075);
+  const auto nodes = path_nodes(dataset.groundtruth(), edges, dataset.camera(), 2);
+  // 0.15 log units are a way of 1.5 px over the faint edge, and of 0.15 px over the strong one.
+  for (const auto& [strength, sigma_px] : {std::pair{0.1, 1.5 / std::sqrt(12)}, {1.0, 0.1}}) {
+    TrueEdge edge = edges.edges[edges.edges.size() / 2];
+    edge.strength = strength;
+    const auto observations = observe(dataset.camera(), edges, edge, nodes, 0.15);
+    ASSERT_FALSE(observations.empty());
+    // It says so anew for each two pixels that it moves by.
+    for (const LineObservation& observation : observations) {
+      EXPECT_GE(observation.weight, (1 - 1e-9) / (sigma_px * sigma_px));
+      EXPECT_LE(observation.weight, 2 / (sigma_px * sigma_px));
+    }
+  }
+}
+
 TEST(TrueEdges, AreNotSeenBehindWhatIsInFront) {
   const TemporaryFolder folder;
   const Dataset dataset = recording(folder, "slide", slide, 0.15);
