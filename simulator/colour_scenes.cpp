@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "simulator/scene/scene_builder.h"
+#include "simulator/scene/build_scene.h"
 
 namespace saccade {
 

@@ -22,7 +22,7 @@
 #include "core/version.h"
 #include "simulator/motion/motion.h"
 #include "simulator/resume.h"
-#include "simulator/scene/scene_builder.h"
+#include "simulator/scene/build_scene.h"
 
 namespace saccade {
 namespace {

@@ -6,7 +6,7 @@
 #include "simulator/colour_scenes.h"
 #include "simulator/motion/motion.h"
 #include "simulator/rig.h"
-#include "simulator/scene/scene_builder.h"
+#include "simulator/scene/build_scene.h"
 
 namespace saccade {
 

@@ -11,7 +11,7 @@
 #include "core/median.h"
 #include "core/process/parallel.h"
 #include "simulator/motion/motion.h"
-#include "simulator/scene/scene_builder.h"
+#include "simulator/scene/build_scene.h"
 #include "simulator/sensor/image_renderer.h"
 
 namespace saccade {

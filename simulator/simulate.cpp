@@ -22,7 +22,7 @@
 #include "simulator/record_labels.h"
 #include "simulator/resume.h"
 #include "simulator/rig.h"
-#include "simulator/scene/scene_builder.h"
+#include "simulator/scene/build_scene.h"
 #include "simulator/sensor/adaptive/audit.h"
 #include "simulator/sensor/texture_aliasing.h"
 

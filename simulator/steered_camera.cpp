@@ -4,7 +4,7 @@
 
 #include "core/error.h"
 #include "simulator/event_source.h"
-#include "simulator/scene/scene_builder.h"
+#include "simulator/scene/build_scene.h"
 
 namespace saccade {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "core/check.h"
 #include "simulator/motion/motion.h"
-#include "simulator/scene/scene_builder.h"
+#include "simulator/scene/build_scene.h"
 #include "simulator/sensor/event_camera.h"
 #include "simulator/sensor/sensor_parameters.h"
 

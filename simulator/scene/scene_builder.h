@@ -10,23 +10,12 @@
 
 #include "core/spline/spline.h"
 #include "simulator/scene/background.h"
-#include "simulator/scene/colour_channel.h"
 #include "simulator/scene/light/environment_light.h"
 #include "simulator/scene/mesh/mesh.h"
 #include "simulator/scene/scene.h"
 #include "simulator/scene/scene_options.h"
 
 namespace saccade {
-
-/// Where `options` puts the mesh: scale (or size) along the axes of the file, then its up axis to
-/// +z, then R = Rz Ry Rx, then the anchor to the translation. A side of the bounding box without extent keeps its size.
-[[nodiscard]] Eigen::Affine3d world_from_mesh(const MeshOptions& options, const Mesh& mesh);
-
-/// Reads all files of `options` and assembles them. Warns of what they state that is not shown, in
-/// few lines. Throws InputError naming the file that is missing or wrong.
-/// `channel`: what the scene's light is of its colours; only the luminance warns.
-[[nodiscard]] Scene build_scene(const SceneOptions& options,
-                                ColourChannel channel = ColourChannel::kLuminance);
 
 struct NormalFrame;
 struct PreparedTriangles;

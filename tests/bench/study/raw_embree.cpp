@@ -10,7 +10,7 @@
 #include "core/process/parallel.h"
 #include "simulator/scene/intersection/embree_api.h"
 #include "simulator/scene/mesh/mesh_import.h"
-#include "simulator/scene/scene_builder.h"
+#include "simulator/scene/mesh_placement.h"
 #include "simulator/sensor/rays/pixel_rays.h"
 
 namespace saccade::study {

@@ -2,7 +2,7 @@
 
 #include "core/config/config.h"
 #include "simulator/motion/motion.h"
-#include "simulator/scene/scene_builder.h"
+#include "simulator/scene/build_scene.h"
 
 namespace saccade::study {
 namespace {

@@ -13,7 +13,7 @@
 #include "core/io/images/image_file.h"
 #include "core/process/progress.h"
 #include "core/srgb.h"
-#include "simulator/scene/scene_builder.h"
+#include "simulator/scene/build_scene.h"
 #include "simulator/simulate.h"
 #include "tests/support/error_of.h"
 #include "tests/unit/simulator/scene/mesh_files.h"

@@ -9,6 +9,7 @@
 #include "core/config/config.h"
 #include "core/error.h"
 #include "core/random.h"
+#include "simulator/scene/build_scene.h"
 #include "simulator/scene/scene_builder.h"
 #include "tests/unit/simulator/scene/mesh_files.h"
 #include "tests/unit/simulator/scene/plane_scene.h"

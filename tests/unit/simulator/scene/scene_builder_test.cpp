@@ -1,3 +1,5 @@
+#include "simulator/scene/build_scene.h"
+#include "simulator/scene/mesh_placement.h"
 #include "simulator/scene/scene_builder.h"
 
 #include <gmock/gmock.h>

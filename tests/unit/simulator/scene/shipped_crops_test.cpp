@@ -5,7 +5,7 @@
 
 #include "core/config/config.h"
 #include "simulator/motion/motion.h"
-#include "simulator/scene/scene_builder.h"
+#include "simulator/scene/build_scene.h"
 #include "simulator/simulation_config.h"
 #include "tests/support/brute_force.h"
 

@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "core/srgb.h"
 #include "simulator/scene/mesh/mesh_import.h"
-#include "simulator/scene/scene_builder.h"
+#include "simulator/scene/build_scene.h"
 #include "tests/unit/simulator/scene/mesh_files.h"
 
 namespace saccade {

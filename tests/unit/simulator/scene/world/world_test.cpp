@@ -17,7 +17,7 @@
 #include "core/error.h"
 #include "core/process/parallel.h"
 #include "simulator/motion/motion.h"
-#include "simulator/scene/scene_builder.h"
+#include "simulator/scene/build_scene.h"
 #include "simulator/scene/world/world_geometry.h"
 #include "simulator/scene/world/world_pictures.h"
 #include "simulator/scene/world/world_texture.h"
