@@ -176,16 +176,14 @@ OdometryFound run_stages(const OdometryInput& input, const Start& start,
   return found;
 }
 
-/// A start that was found on wrong evidence makes a map on which the next events do not lie. Throws
-/// InputError where the poses of the first tenth of a second after it are more likely wrong.
+/// Throws InputError where the poses of the trial of a start that was found are more likely wrong.
 void check_start(const OdometryInput& input, const Start& start, const OdometryFound& found) {
   if (!start.found) return;
-  constexpr double kTrial_s = 0.1;
   const double from_s = start.found->path.end_s();
   double sum = 0, count = 0;
   for (const TrackedPose& pose : found.result.poses) {
     const double t_s = seconds_from_ns(pose.t_ns);
-    if (t_s <= from_s || t_s > from_s + kTrial_s) continue;
+    if (t_s <= from_s || t_s > from_s + kStartTrial_s) continue;
     sum += pose.probability;
     ++count;
   }

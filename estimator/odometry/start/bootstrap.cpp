@@ -127,8 +127,9 @@ class StartFinder {
   };
 
   /// What the flow of tiles makes of a fit. The whole window must tell the direction, and so must
-  /// each half: a rotation that changes within the window is explained by a wrong translation, which
-  /// hardly ever is one for both halves.
+  /// each half where no trial follows: a rotation that changes within the window is explained by a
+  /// wrong translation, which hardly ever is one for both halves. A trial tells such starts as well,
+  /// and does not refuse those whose halves are too short to tell anything.
   [[nodiscard]] FlowStart told_by_flow(std::span<const Event> events, PlaneFit fit) {
     FlowStart start;
     const std::span<const Event> window = between(events, fit.start_s, fit.end_s + kPoseSpacing_s);
@@ -139,6 +140,10 @@ class StartFinder {
       start.has_tiles = true;
       fit.motion = {found->velocity, found->rate, Eigen::Vector2d::Zero()};
       if (is_last && found->direction_deg > kMaxDirection_deg) return start;
+    }
+    if (fit.start_s + options_.window_s + kStartTrial_s <= seconds_from_ns(events.back().t_ns)) {
+      start.fit = fit;
+      return start;
     }
     const double middle_s = (fit.start_s + fit.end_s) / 2,
                  quarter_s = (fit.end_s - fit.start_s) / 4;

@@ -10,6 +10,10 @@
 
 namespace saccade {
 
+/// After a start that was found poses are tracked for so long before it is believed: a start on wrong
+/// evidence makes a map on which the next events do not lie.
+constexpr double kStartTrial_s = 0.1;
+
 struct BootstrapOptions {
   double depth_m = 1;          ///< the scale is free: the typical depth is called so
   double window_s = 0.25;      ///< of the path that is found, at most
@@ -35,7 +39,8 @@ struct Bootstrap {
 
 /// Finds how the camera moved at first, from events alone and up to scale: motions before a plane
 /// by contrast (PlaneSearch), the direction of motion by the flow of tiles (fit_motion), without
-/// which there is no start, then path and edges adjusted together (PathRefinement). With a
+/// which there is no start and which both halves of the window must agree about where no trial
+/// (kStartTrial_s) follows, then path and edges adjusted together (PathRefinement). With a
 /// gyroscope the flow is not needed: of the plane's motions the path by which most events lie on
 /// edges is taken. The path is extrapolated at its last velocity: the longer the
 /// path, the better it distinguishes rotation from translation, but constant velocity explains no

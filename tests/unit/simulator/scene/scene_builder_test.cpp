@@ -1,6 +1,6 @@
+#include "simulator/scene/scene_builder.h"
 #include "simulator/scene/build_scene.h"
 #include "simulator/scene/mesh_placement.h"
-#include "simulator/scene/scene_builder.h"
 
 #include <gmock/gmock.h>
 

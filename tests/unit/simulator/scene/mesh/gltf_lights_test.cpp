@@ -9,8 +9,8 @@
 #include "core/config/config.h"
 #include "core/error.h"
 #include "core/srgb.h"
-#include "simulator/scene/mesh/mesh_import.h"
 #include "simulator/scene/build_scene.h"
+#include "simulator/scene/mesh/mesh_import.h"
 #include "tests/unit/simulator/scene/mesh_files.h"
 
 namespace saccade {
