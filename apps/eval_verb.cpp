@@ -12,7 +12,7 @@
 #include "core/process/progress.h"
 #include "eval/evaluate.h"
 #include "eval/evaluate_events.h"
-#include "eval/run_folder.h"
+#include "eval/metrics/trajectory/align.h"
 #include "eval/store/result_store.h"
 
 namespace saccade {
@@ -90,8 +90,9 @@ void check_comparison(const EvalOptions& options) {
 
 /// A run that found its start by itself has a world of its own.
 void say_whose_frame(const std::filesystem::path& run, const Metrics& metrics) {
-  const Alignment freedom = RunFolder::open(run).freedom();
-  if (freedom == Alignment::kNone || !metrics.get("trajectory.aligned_freedoms")) return;
+  const std::optional<double> freedoms = metrics.get("trajectory.aligned_freedoms");
+  if (!freedoms) return;
+  const Alignment freedom = alignment_of(*freedoms);
   show_notice(fmt::format(
       "{}: no pose was given at its start, so that its world has an origin and a heading{} of its "
       "own: errors are those {}",

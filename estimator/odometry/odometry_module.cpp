@@ -176,7 +176,8 @@ OdometryFound run_stages(const OdometryInput& input, const Start& start,
   return found;
 }
 
-/// Throws InputError where the poses of the trial of a start that was found are more likely wrong.
+/// Throws InputError where the poses of the trial of a start that was found are more likely wrong,
+/// or where there are none although the recording goes on.
 void check_start(const OdometryInput& input, const Start& start, const OdometryFound& found) {
   if (!start.found) return;
   const double from_s = start.found->path.end_s();
@@ -187,6 +188,13 @@ void check_start(const OdometryInput& input, const Start& start, const OdometryF
     sum += pose.probability;
     ++count;
   }
+  const bool goes_on = from_s + kStartTrial_s <= seconds_from_ns(input.events.back().t_ns);
+  if (count == 0 && goes_on)
+    throw InputError(input.dataset.folder().string(),
+                     fmt::format("no pose follows the start that was found at {:.3f} s, so that "
+                                 "nothing tells whether it is right: begin elsewhere (--start-s), "
+                                 "or give poses (start.truth_s)",
+                                 start.found->path.start_s()));
   if (count > 0 && sum < 0.5 * count)
     throw InputError(
         input.dataset.folder().string(),

@@ -45,9 +45,11 @@ RunSummary run_refinement(const RunRequest& request) {
     throw InputError("--poses-from", "poses are refined here; it is of a run of depth");
   if (config.method != "depth")
     refuse_smoothing(request, "poses are refined here; it is of a run of depth");
-  // A run that found its own start has a world of its own, and so has this one.
-  if (const auto start = run.folder / "start.yaml"; std::filesystem::exists(start))
-    std::filesystem::copy_file(start, writer.path() / "start.yaml");
+  // A run that found its own start has a world of its own, in metres or not, and so has this one.
+  if (std::filesystem::exists(run.folder / "start.yaml"))
+    for (const char* name : {"start.yaml", "inertial.yaml"})
+      if (std::filesystem::exists(run.folder / name))
+        std::filesystem::copy_file(run.folder / name, writer.path() / name);
   MethodClass method_class{{MethodInput::kEvents}, Processing::kBatch};
   if (config.method == "joint" && config.joint.use_imu)
     method_class.inputs.insert(MethodInput::kImu);

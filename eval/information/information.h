@@ -10,9 +10,10 @@ namespace saccade {
 /// What a recording tells about the camera's path and the depth at best, from its truth alone: no
 /// estimator has part in it. An edge of |grad L| = g that moves by d pixels across its line fires
 /// where g min(d, 2) reaches the contrast threshold C, and then says to max(C / g / sqrt(12), 0.1)
-/// pixels (sigma) where it is: anywhere on the way to its next event. The bounds are those of Cramer and Rao for these observations, for poses between which the
-/// view moves by two pixels, each within that motion of the one before. Moving objects count as
-/// standing still.
+/// pixels (sigma) where it is: anywhere on the way to its next event, and no better than blur and
+/// noise leave to accurate methods. The bounds are those of Cramer and Rao for these observations,
+/// for poses between which the view moves by two pixels, each within that motion of the one before.
+/// Moving objects count as standing still.
 struct Information {
   /// Changes with whatever changes a bound, so that stored ones are recognised as out of date.
   static constexpr int kVersion = 2;

@@ -138,7 +138,8 @@ std::vector<LineObservation> observe(const PinholeCamera& camera, const TrueEdge
     if (edge.strength * std::min(moved_px, kEdgeWidthPx) < contrast) continue;
     LineObservation observation = linearise(view, edge, pose);
     observation.node = i;
-    // Each width of the edge that it moves by says where it is anew.
+    // Each width of the edge that it moves by says where it is anew; the events of one width share
+    // what is wrong about it.
     const double sigma = sigma_px(contrast, edge.strength);
     observation.weight = std::max(1.0, moved_px / kEdgeWidthPx) / (sigma * sigma);
     observations.push_back(observation);

@@ -79,7 +79,7 @@ std::vector<MetricInfo> trajectory_rows() {
       {.key = "trajectory.rpe.*.rot_deg_per_m", .unit = "deg/m", .needs = kTruePath},
       {.key = "trajectory.rpe.*.pairs", .better = kNeither, .needs = kTruePath},
       {.key = "trajectory.aligned_freedoms", .label = "aligned freedoms", .better = kNeither,
-       .needs = "a trajectory without a given start", .in_tables = true},
+       .needs = "trajectory without a given start, ground truth", .in_tables = true},
       {.key = "trajectory.poses", .better = kNeither, .needs = "trajectory"},
       {.key = "trajectory.duration_s", .unit = "s", .better = kNeither, .needs = "ground truth"},
       {.key = "trajectory.path_length_m", .unit = "m", .better = kNeither,

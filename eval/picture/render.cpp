@@ -147,7 +147,10 @@ ImageRgb8 contact_sheet(const Scene& scene, const RunRecord::Window& span) {
   }
   const std::vector<Eigen::Vector3d> truth = positions(subject.dataset.groundtruth(), span);
   std::vector<Eigen::Vector3d> estimate;
-  if (subject.has_poses()) estimate = positions(*subject.run->trajectory, span);
+  if (subject.has_poses())
+    estimate = positions(
+        truth_from_estimate(score_input(*subject.run, subject.dataset)) * *subject.run->trajectory,
+        span);
   if (!truth.empty() || !estimate.empty())
     sheet.add_row("",
                   {{estimate.empty() ? "trajectory" : "trajectory: truth (grey), estimate (orange)",
@@ -191,7 +194,7 @@ void render(const std::filesystem::path& path, const std::filesystem::path& outp
     if (const auto history = KeyframeHistory::load(*subject.run); history && subject.has_poses())
       return render_odometry(*subject.run, subject.dataset, *history, title_of(subject), span,
                              output, options);
-    const ViewPictures views(subject.run->folder, subject.dataset);
+    const ViewPictures views(*subject.run, subject.dataset);
     if (!views.times().empty())
       return render_views(*subject.run, subject.dataset, views, title_of(subject), span, output,
                           options);

@@ -45,14 +45,17 @@ std::size_t recording_of(const fs::path& folder, ViewContent& content) {
 }
 
 void add_run(const fs::path& folder, ViewContent& content) {
-  ViewRun run{"", RunFolder::open(folder), {}, {}, {}};
+  ViewRun run{"", RunFolder::open(folder), {}, {}, {}, false};
   run.name = run.run.name();
   if (fs::exists(folder / "views.yaml")) run.views = read_view_list(folder / "views.yaml");
   if (fs::is_directory(run.run.record.dataset))
     run.recording = recording_of(run.run.record.dataset, content);
-  if (run.recording)
-    run.truth_from_estimate =
-        truth_from_estimate(score_input(run.run, content.recordings[*run.recording]->dataset));
+  if (run.recording) {
+    const TrajectoryScoreInput input =
+        score_input(run.run, content.recordings[*run.recording]->dataset);
+    run.truth_from_estimate = truth_from_estimate(input);
+    run.is_aligned = input.freedom != Alignment::kNone && !associate(input).empty();
+  }
   content.runs.push_back(std::move(run));
 }
 
@@ -95,11 +98,7 @@ void tell_names_apart(std::vector<ViewRun>& runs) {
 }  // namespace
 
 Trajectory ViewRun::aligned_path() const {
-  std::vector<StampedPose> poses;
-  if (run.trajectory)
-    for (const StampedPose& pose : run.trajectory->poses())
-      poses.push_back({pose.t_s, truth_from_estimate * pose.world_from_camera});
-  return Trajectory(std::move(poses));
+  return run.trajectory ? truth_from_estimate * *run.trajectory : Trajectory();
 }
 
 ViewRecording::ViewRecording(const fs::path& path) : folder(path), dataset(Dataset::open(path)) {

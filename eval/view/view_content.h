@@ -36,6 +36,7 @@ struct ViewRun {
   /// Brings path, map and depth to where they are shown; of a start from events alone the
   /// alignment that it is scored after.
   Similarity truth_from_estimate;
+  bool is_aligned = false;
 
   [[nodiscard]] Trajectory aligned_path() const;
 };

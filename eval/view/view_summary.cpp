@@ -70,7 +70,7 @@ Json run_json(const ViewRun& run, std::size_t most) {
             {"folder", run.run.folder.string()},
             {"module", run.run.record.module},
             {"poses", run.run.trajectory ? run.run.trajectory->size() : 0},
-            {"is_aligned", run.run.freedom() != Alignment::kNone}};
+            {"is_aligned", run.is_aligned}};
   if (run.recording) json["recording"] = *run.recording;
   if (const std::string problem = run.run.record.problem(); !problem.empty())
     json["problem"] = problem;

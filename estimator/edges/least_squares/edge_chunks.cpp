@@ -50,7 +50,7 @@ std::vector<EdgeChunk> make_chunks(std::vector<CoupledEdge> edges, std::size_t u
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<EdgeChunk> chunks;
   std::vector<std::uint32_t> all;
-  /// Whether it costs no more in the last chunk, which then couples `all`, than by itself.
+  // Whether it costs no more in the last chunk, which then couples `all`, than by itself.
   const auto fits = [&](const CoupledEdge& edge) {
     if (chunks.empty() || chunks.back().edges.size() >= EdgeChunk::kMostEdges) return false;
     const EdgeChunk& chunk = chunks.back();

@@ -141,7 +141,8 @@ class StartFinder {
       fit.motion = {found->velocity, found->rate, Eigen::Vector2d::Zero()};
       if (is_last && found->direction_deg > kMaxDirection_deg) return start;
     }
-    if (fit.start_s + options_.window_s + kStartTrial_s <= seconds_from_ns(events.back().t_ns)) {
+    const double longest_s = std::max(fit.end_s, fit.start_s + options_.window_s);
+    if (longest_s + kStartTrial_s <= seconds_from_ns(events.back().t_ns)) {
       start.fit = fit;
       return start;
     }

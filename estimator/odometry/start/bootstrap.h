@@ -10,8 +10,8 @@
 
 namespace saccade {
 
-/// After a start that was found poses are tracked for so long before it is believed: a start on wrong
-/// evidence makes a map on which the next events do not lie.
+/// After a start that was found poses are tracked for so long before it is believed: a start on
+/// wrong evidence makes a map on which the next events do not lie.
 constexpr double kStartTrial_s = 0.1;
 
 struct BootstrapOptions {

@@ -176,8 +176,10 @@ RunSummary refine_joint(const RunRequest& request, const RefinementConfig& confi
   const auto covariances = replace_poses(result, input.poses);
   write_poses(writer.path(), input.poses);
   if (!covariances.empty()) write_covariances(writer.path() / "covariance.txt", covariances);
-  if (result.inertial)
-    write_inertial_alignment(writer.path() / "inertial.yaml", *result.inertial, is_scaled);
+  // What brought the run that this one starts from into metres still holds.
+  const std::filesystem::path inertial = writer.path() / "inertial.yaml";
+  if (result.inertial && (is_scaled || !std::filesystem::exists(inertial)))
+    write_inertial_alignment(inertial, *result.inertial, is_scaled);
   result.costs.save(writer.path() / "cost.csv");
   write_keyframes(writer.path(), camera.undistorted(), keyframes, input.keyframes);
   io.reset();

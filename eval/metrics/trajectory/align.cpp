@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/check.h"
 
@@ -111,6 +112,12 @@ Similarity with_rotation(const PairMoments& m, const Eigen::Matrix3d& rotation,
 
 }  // namespace
 
+Alignment alignment_of(double freedoms) {
+  for (const Alignment alignment : {Alignment::kYaw, Alignment::kSe3, Alignment::kSim3})
+    if (freedoms == freedoms_of(alignment)) return alignment;
+  return Alignment::kNone;
+}
+
 const char* alignment_text(Alignment alignment) {
   switch (alignment) {
     case Alignment::kNone:
@@ -132,6 +139,14 @@ std::vector<Eigen::Vector3f> operator*(const Similarity& aligned,
   for (const Eigen::Vector3f& point : points)
     moved.emplace_back((aligned * Eigen::Vector3d(point.cast<double>())).cast<float>());
   return moved;
+}
+
+Trajectory operator*(const Similarity& aligned, const Trajectory& poses) {
+  std::vector<StampedPose> moved;
+  moved.reserve(poses.size());
+  for (const StampedPose& pose : poses.poses())
+    moved.push_back({pose.t_s, aligned * pose.world_from_camera});
+  return Trajectory(std::move(moved));
 }
 
 Similarity align_positions(std::span<const PosePair> pairs, Alignment alignment) {

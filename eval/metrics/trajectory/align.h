@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/rigid3.h"
+#include "core/trajectory.h"
 
 namespace saccade {
 
@@ -15,11 +16,13 @@ namespace saccade {
 /// Each takes out what the one before it does.
 enum class Alignment { kNone, kYaw, kSe3, kSim3 };
 
-/// Numbers that an alignment takes from the truth: 0, 4, 6, 7.
+/// Numbers that an alignment takes from the truth, by which metrics name it.
 [[nodiscard]] constexpr int freedoms_of(Alignment alignment) {
   constexpr std::array<int, 4> kFreedoms{0, 4, 6, 7};
   return kFreedoms[static_cast<std::size_t>(alignment)];
 }
+
+[[nodiscard]] Alignment alignment_of(double freedoms);
 
 /// "without alignment", "after an alignment by Sim(3)", ...
 [[nodiscard]] const char* alignment_text(Alignment alignment);
@@ -47,6 +50,9 @@ struct Similarity {
 [[nodiscard]] std::vector<Eigen::Vector3f> operator*(const Similarity& aligned,
                                                      std::span<const Eigen::Vector3f> points);
 
+/// The poses moved by `aligned`.
+[[nodiscard]] Trajectory operator*(const Similarity& aligned, const Trajectory& poses);
+
 /// Least-squares alignment of the positions (Umeyama, PAMI 13(4), 1991):
 ///   min over s, R, t of sum |truth_i - (s R estimate_i + t)|^2
 /// with U D V^T the singular value decomposition of the covariance of truth and estimate,
@@ -64,11 +70,12 @@ struct Similarity {
 /// angle no better than that.
 [[nodiscard]] Similarity align(std::span<const PosePair> pairs, Alignment alignment);
 
-/// The alignment after which views that are `depth_m` > 0 deep differ least, positions and orientations
-/// counting alike:
+/// The alignment after which views that are `depth_m` > 0 deep differ least, positions and
+/// orientations counting alike:
 ///   min over s, R, t of mean |truth_i - (s R estimate_i + t)|^2 / depth_m^2 + mean angle_i^2,
 /// the angles by their chords. The positions of a short path tell the rotation far worse than its
-/// orientations do. Alternates between the rotation and the scale.
+/// orientations do. Of Sim(3) the minimum that rotation and scale in turns reach from the mean
+/// rotation; a path that no positive scale fits keeps scale 1.
 [[nodiscard]] Similarity align_views(std::span<const PosePair> pairs, Alignment alignment,
                                      double depth_m);
 

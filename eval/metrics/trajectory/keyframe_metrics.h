@@ -20,9 +20,9 @@ struct KeyframeJump {
   double rotation_deg = 0;
 };
 
-/// With E(t) = truth(t)^-1 estimate(t), the estimate aligned as its world is free: the translation and the angle of E(before)^-1 E(after),
-/// between the last pose before a keyframe was taken and the first after it. Those that no pose
-/// surrounds, such as the first, are left out.
+/// With E(t) = truth(t)^-1 estimate(t), the estimate aligned as its world is free: the translation
+/// and the angle of E(before)^-1 E(after), between the last pose before a keyframe was taken and the
+/// first after it. Those that no pose surrounds, such as the first, are left out.
 [[nodiscard]] inline std::vector<KeyframeJump> keyframe_jumps(
     std::span<const KeyframeEntry> keyframes, const TrajectoryScoreInput& input) {
   std::vector<KeyframeJump> jumps;

@@ -35,9 +35,9 @@ namespace saccade {
 /// (trajectory.aligned_freedoms) the RMSE over time after its alignment.
 [[nodiscard]] std::optional<double> position_error_m(const Metrics& scores);
 
-/// 1 where the run succeeded: its positions err by less than 1 % of the mean depth (position_error_m())
-/// and tracking was never lost; else 0, also where it found no pose. nullopt where the
-/// truth or the depth is missing. `scores`: those of score_trajectory().
+/// 1 where the run succeeded: its positions err by less than 1 % of the mean depth
+/// (position_error_m()) and tracking was never lost; else 0, also where it found no pose. nullopt
+/// where the truth or the depth is missing. `scores`: those of score_trajectory().
 [[nodiscard]] std::optional<double> success_of(const Metrics& scores);
 
 }  // namespace saccade

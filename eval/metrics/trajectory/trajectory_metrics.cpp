@@ -86,8 +86,11 @@ Similarity truth_from_estimate(const TrajectoryScoreInput& input) {
 ScoredSamples scored_samples(const TrajectoryScoreInput& input) {
   const std::optional<RunRecord::Window> interval = scored_interval(input.truth, input.window);
   if (!interval) return {};
+  // Where nothing of an estimate in a world of its own can be aligned, nothing can be compared.
+  const bool is_free = input.freedom != Alignment::kNone;
+  if (is_free && associate(input).empty()) return {};
   ScoredSamples samples = take_samples(input.estimate, input.truth, *interval);
-  if (input.freedom == Alignment::kNone) return samples;
+  if (!is_free) return samples;
   const Similarity aligned = truth_from_estimate(input);
   for (Rigid3& pose : samples.estimated) pose = aligned * pose;
   return samples;
@@ -135,9 +138,9 @@ Metrics score_trajectory(const TrajectoryScoreInput& input) {
   set_relative_errors(metrics, samples);
   metrics.set("trajectory.drift_percent", drift_percent(samples));
 
-  metrics.set("trajectory.aligned_freedoms", input.freedom == Alignment::kNone
-                                                 ? std::nullopt
-                                                 : std::optional(freedoms_of(input.freedom)));
+  const bool is_aligned = input.freedom != Alignment::kNone && !pairs.empty();
+  metrics.set("trajectory.aligned_freedoms",
+              is_aligned ? std::optional(freedoms_of(input.freedom)) : std::nullopt);
   metrics.set("trajectory.poses", static_cast<double>(input.estimate.size()));
   metrics.set("trajectory.mean_depth_m", input.mean_depth_m);
   std::optional<double> covered, duration, path, lost, reported, after_begin;

@@ -40,8 +40,8 @@ struct ErrorSeries {
   std::vector<double> dtheta_deg;      ///< angle between q and q_gt (thesis 8.2)
 };
 
-/// The alignment of `input.freedom` by all poses in the scored interval, as align_views() where a
-/// depth is known; the identity without one.
+/// The alignment of `input.freedom` by all poses in the scored interval: align_views() where a depth
+/// is known, else align(). The identity where there is no such pose.
 [[nodiscard]] Similarity truth_from_estimate(const TrajectoryScoreInput& input);
 
 /// Estimate, after that alignment, and truth on the grid of the scored interval; empty where one of

@@ -63,18 +63,20 @@ OdometryView::OdometryView(const RunFolder& run, const Dataset& dataset,
                            const KeyframeHistory& history, const RunRecord::Window& loaded,
                            const SensorViewStyle& style)
     : run_(run),
+      truth_from_estimate_(truth_from_estimate(score_input(run, dataset))),
       history_(history),
       sensor_(dataset, loaded.start_s, loaded.end_s, style),
       upscale_(style.upscale),
       range_(range_of(history)),
       errors_(errors_over_time(score_input(run, dataset))),
-      path_(dataset.groundtruth(), *run.trajectory, sensor_.width(), sensor_.height(),
-            style.theme) {}
+      path_(dataset.groundtruth(), truth_from_estimate_ * *run.trajectory, sensor_.width(),
+            sensor_.height(), style.theme) {}
 
 CaptionedPicture OdometryView::path(double t_s) const {
   std::vector<Eigen::Vector3d> keyframes;
   for (std::size_t i = 0; i <= history_.in_force(t_s); ++i)
-    keyframes.push_back(history_.keyframes()[i].world_from_camera.translation());
+    keyframes.push_back(truth_from_estimate_ *
+                        history_.keyframes()[i].world_from_camera.translation());
   return {error_caption(errors_, t_s), path_.draw(t_s, keyframes)};
 }
 

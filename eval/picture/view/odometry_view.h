@@ -31,6 +31,7 @@ class OdometryView {
   [[nodiscard]] CaptionedPicture path(double t_s) const;
 
   const RunFolder& run_;
+  Similarity truth_from_estimate_;
   const KeyframeHistory& history_;
   SensorView sensor_;
   int upscale_;

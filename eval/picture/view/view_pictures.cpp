@@ -85,9 +85,9 @@ std::vector<GrowthStep> growth_steps(const std::filesystem::path& folder) {
   return steps;
 }
 
-ViewPictures::ViewPictures(const std::filesystem::path& folder, const Dataset& dataset)
-    : dataset_(dataset), images_(load_image_views(folder)) {
-  if (images_.empty()) depths_ = load_depth_views(folder);
+ViewPictures::ViewPictures(const RunFolder& run, const Dataset& dataset)
+    : dataset_(dataset), images_(load_image_views(run.folder)) {
+  if (images_.empty()) depths_ = load_depth_views(run, dataset);
   for (const ImageView& view : images_) times_.push_back(view.t_s);
   for (const EstimatedView& view : depths_) times_.push_back(view.t_s);
 }

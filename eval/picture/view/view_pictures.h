@@ -39,7 +39,7 @@ struct GrowthStep {
 class ViewPictures {
  public:
   /// Reads the views of the run folder; `dataset` must outlive this.
-  ViewPictures(const std::filesystem::path& folder, const Dataset& dataset);
+  ViewPictures(const RunFolder& run, const Dataset& dataset);
 
   /// Times of the views [s]; empty for other runs.
   [[nodiscard]] const std::vector<double>& times() const { return times_; }

@@ -62,7 +62,7 @@ std::optional<RenderOptions> film_options(const RunData& data, double length_s) 
   if (!growth_steps(data.run.folder).empty()) return options;
   if (!data.keyframes) {
     if (load_mosaic(data.run)) return std::nullopt;
-    const std::size_t views = ViewPictures(data.run.folder, *data.data).times().size();
+    const std::size_t views = ViewPictures(data.run, *data.data).times().size();
     if (views > 0) return views < kLeastViews ? std::nullopt : std::optional(options);
   }
   options.fps = kFilmFps;

@@ -57,11 +57,8 @@ std::string keyframe_table(const RunData& data, std::span<const KeyframeEntry> k
 
 std::string path_figure(const RunData& data, std::span<const KeyframeEntry> keyframes) {
   if (data.input.estimate.empty()) return "";
-  std::vector<StampedPose> poses(data.input.estimate.poses().begin(),
-                                 data.input.estimate.poses().end());
-  for (StampedPose& pose : poses)
-    pose.world_from_camera = data.truth_from_estimate * pose.world_from_camera;
-  const TopDownPath path(data.input.truth, Trajectory(std::move(poses)), 640, 480, kLightTheme);
+  const TopDownPath path(data.input.truth, data.truth_from_estimate * data.input.estimate, 640, 480,
+                         kLightTheme);
   std::vector<Eigen::Vector3d> positions;
   for (const KeyframeEntry& keyframe : keyframes)
     positions.push_back(data.truth_from_estimate * keyframe.world_from_camera.translation());

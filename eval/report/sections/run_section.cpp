@@ -165,10 +165,10 @@ std::string accuracy_details(const RunData& data) {
              "<p class=\"note\">{}Drift at the end {} % of the path. Lost for {} s by the truth, "
              "{} s by its own report, {} s of the loss unreported. Worst instant of the map in the "
              "image: {} px RMS.</p>",
-             data.input.freedom == Alignment::kNone
-                 ? ""
-                 : fmt::format("No pose was given at the start: errors are those {}. ",
-                               alignment_text(data.input.freedom)),
+             m.get("trajectory.aligned_freedoms")
+                 ? fmt::format("No pose was given at the start: errors are those {}. ",
+                               alignment_text(alignment_of(*m.get("trajectory.aligned_freedoms"))))
+                 : "",
              significant(m.get("trajectory.drift_percent")),
              significant(m.get("trajectory.lost_s")),
              significant(m.get("trajectory.reported_lost_s")),

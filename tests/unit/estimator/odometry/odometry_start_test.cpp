@@ -195,6 +195,24 @@ TEST_F(OdometryModule, StartsFromEventsAndCalibrationAlone) {
   EXPECT_LT(found.poses().front().world_from_camera.log().norm(), 0.01);
 }
 
+TEST_F(OdometryModule, RefusesAStartThatNoPoseFollows) {
+  // The camera stops, and a single event comes a second later: nothing tells whether it was right.
+  constexpr double kStop_s = 0.249;
+  const testing::PlanarWorld world = testing::corner_world(160, 120);
+  Events events = world.simulate(steady_glide, 0, kStop_s, 1e-3, 0.15);
+  events.push_back({ns_from_seconds(kStop_s + 1), 20, 30, 1});
+  const testing::StampedPicture blank{0, ImageU8(world.camera().width, world.camera().height)};
+  std::string yaml = adjusted();
+  yaml.replace(yaml.find("truth_s: 0.2, truth_fraction: 0.4"), 33,
+               "truth_s: 0, initial_depth_m: 2.2");
+  RunRequest run = request("stop", yaml);
+  run.dataset = folder_.path() / "stop_data";
+  testing::write_recording(run.dataset, world.camera(), events, std::span(&blank, 1),
+                           poses_until(kStop_s, steady_glide));
+  EXPECT_THAT(error_of([&] { return run_odometry(run); }),
+              HasSubstr("no pose follows the start that was found at"));
+}
+
 TEST_F(OdometryModule, RefusesAStartThatTheNextEventsDoNotLieOn) {
   // A start is found in the first quarter of a second. What follows it is noise, at the rate of the
   // events before.

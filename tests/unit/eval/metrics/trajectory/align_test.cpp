@@ -45,6 +45,12 @@ TEST(Align, RecoversASimilarityExactly) {
   expect_same(align(transformed(kSpread, kTurned), Alignment::kSe3), kTurned);
 }
 
+TEST(Align, AMetricTellsTheAlignmentByItsFreedoms) {
+  for (const Alignment alignment :
+       {Alignment::kNone, Alignment::kYaw, Alignment::kSe3, Alignment::kSim3})
+    EXPECT_EQ(alignment_of(freedoms_of(alignment)), alignment);
+}
+
 TEST(Align, YawRotatesAboutTheVerticalAlone) {
   const Similarity yawed{1, Rigid3(about({0, 0, 1}, 2.0), {4, -5, 6})};
   expect_same(align(transformed(kSpread, yawed), Alignment::kYaw), yawed);

@@ -232,6 +232,19 @@ TEST(ScoreTrajectory, AWorldOfItsOwnIsAlignedFirst) {
   EXPECT_EQ(score_loss(input).get("trajectory.loss.unreported_s"), 0);
 }
 
+TEST(ScoreTrajectory, AWorldOfItsOwnWithoutAPoseInTheIntervalCannotBeCompared) {
+  TrajectoryScoreInput input = in_another_world({3, Rigid3()});
+  input.freedom = Alignment::kSim3;
+  std::vector<StampedPose> late;
+  for (const StampedPose& pose : input.estimate.poses())
+    late.push_back({pose.t_s + 5, pose.world_from_camera});
+  input.estimate = Trajectory(late);
+  const Metrics m = score_trajectory(input);
+  for (const char* key : {"dt_m.mean", "dtheta_deg.mean", "lost_s", "aligned_freedoms"})
+    EXPECT_FALSE(m.get(std::string("trajectory.") + key)) << key;
+  EXPECT_EQ(success_of(m), 0);
+}
+
 TEST(ScoreTrajectory, OfAWorldThatIsUprightAndInMetresOnlyTheHeadingIsAligned) {
   TrajectoryScoreInput turned = in_another_world({1, Rigid3(so3_exp({0, 0, 2}), {1, 2, 3})});
   turned.freedom = Alignment::kYaw;
