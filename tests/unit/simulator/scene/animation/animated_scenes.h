@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "core/config/config.h"
+#include "core/spline/spline.h"
 #include "simulator/scene/build_scene.h"
 #include "tests/unit/simulator/scene/animation/gltf_models.h"
 #include "tests/unit/simulator/scene/mesh_files.h"
