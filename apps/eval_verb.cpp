@@ -93,10 +93,13 @@ void say_whose_frame(const std::filesystem::path& run, const Metrics& metrics) {
   const std::optional<double> freedoms = metrics.get("trajectory.aligned_freedoms");
   if (!freedoms) return;
   const Alignment freedom = alignment_of(*freedoms);
-  show_notice(fmt::format(
-      "{}: no pose was given at its start, so that its world has an origin and a heading{} of its "
-      "own: errors are those {}",
-      run.string(), freedom == Alignment::kSim3 ? ", and a scale," : "", alignment_text(freedom)));
+  show_notice(
+      fmt::format("{}: no pose was given at its start, so that its world has {} of its own: errors "
+                  "are those {}",
+                  run.string(),
+                  freedom == Alignment::kSim3 ? "an origin, an orientation and a scale"
+                                              : "an origin and a heading",
+                  alignment_text(freedom)));
 }
 
 void evaluate(const EvalOptions& options) {

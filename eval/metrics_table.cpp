@@ -50,8 +50,8 @@ void add(std::string& text, const Table& table) {
 }
 
 void add_errors(std::string& text, const Metrics& metrics) {
-  if (const double freedoms = metrics.get("trajectory.aligned_freedoms").value_or(0); freedoms > 0)
-    text += fmt::format("  errors {}\n", alignment_text(alignment_of(freedoms)));
+  if (const std::optional<double> freedoms = metrics.get("trajectory.aligned_freedoms"))
+    text += fmt::format("  errors {}\n", alignment_text(alignment_of(*freedoms)));
   Table table = table_of({"", "mean", "sigma", "max", "RMSE"});
   for (const auto& [label, key, decimals] : {std::tuple{"dt_rel [%]", "dt_rel_percent", 3},
                                              {"dtheta [deg]", "dtheta_deg", 3},

@@ -196,7 +196,7 @@ std::string method_text(const SweepResults& results) {
   for (const SweepRow& row : results.rows) {
     if (!row.machine.empty()) machines.insert(row.machine);
     if (!row.tool_version.empty()) versions.insert(row.tool_version);
-    if (row.metrics.get("trajectory.aligned_freedoms").value_or(0) > 0)
+    if (row.metrics.get("trajectory.aligned_freedoms"))
       aligned.insert(row.job->point.configuration);
   }
   if (!aligned.empty())

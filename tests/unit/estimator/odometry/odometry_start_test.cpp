@@ -169,18 +169,28 @@ TEST_F(OdometryModule, TakesTheGivenStartFromAnotherFile) {
   EXPECT_THAT(error_of([&] { return run_odometry(run); }), HasSubstr("--poses-from"));
 }
 
+/// adjusted(), without a given pose.
+std::string without_poses() {
+  std::string yaml = adjusted();
+  yaml.replace(yaml.find("truth_s: 0.2, truth_fraction: 0.4"), 33,
+               "truth_s: 0, initial_depth_m: 2.2");
+  return yaml;
+}
+
+/// A recording of steady_glide() until `steady_s`, whatever its events are later.
+void write_steady(const fs::path& folder, std::span<const Event> events, double steady_s) {
+  const PinholeCamera camera = testing::corner_world(160, 120).camera();
+  const testing::StampedPicture blank{0, ImageU8(camera.width, camera.height)};
+  testing::write_recording(folder, camera, events, std::span(&blank, 1),
+                           poses_until(steady_s, steady_glide));
+}
+
 TEST_F(OdometryModule, StartsFromEventsAndCalibrationAlone) {
   constexpr double kSteadyEnd_s = 0.4;
   const fs::path steady = folder_.path() / "steady";
   const testing::PlanarWorld world = testing::corner_world(160, 120);
-  const testing::StampedPicture blank{0, ImageU8(world.camera().width, world.camera().height)};
-  testing::write_recording(steady, world.camera(),
-                           world.simulate(steady_glide, 0, kSteadyEnd_s, 1e-3, 0.15),
-                           std::span(&blank, 1), poses_until(kSteadyEnd_s, steady_glide));
-  std::string yaml = adjusted();
-  yaml.replace(yaml.find("truth_s: 0.2, truth_fraction: 0.4"), 33,
-               "truth_s: 0, initial_depth_m: 2.2");
-  RunRequest run = request("with", yaml);
+  write_steady(steady, world.simulate(steady_glide, 0, kSteadyEnd_s, 1e-3, 0.15), kSteadyEnd_s);
+  RunRequest run = request("with", without_poses());
   run.dataset = steady;
   const RunSummary summary = run_odometry(run);
   EXPECT_EQ(summary.lost_poses, 0U);
@@ -201,14 +211,9 @@ TEST_F(OdometryModule, RefusesAStartThatNoPoseFollows) {
   const testing::PlanarWorld world = testing::corner_world(160, 120);
   Events events = world.simulate(steady_glide, 0, kStop_s, 1e-3, 0.15);
   events.push_back({ns_from_seconds(kStop_s + 1), 20, 30, 1});
-  const testing::StampedPicture blank{0, ImageU8(world.camera().width, world.camera().height)};
-  std::string yaml = adjusted();
-  yaml.replace(yaml.find("truth_s: 0.2, truth_fraction: 0.4"), 33,
-               "truth_s: 0, initial_depth_m: 2.2");
-  RunRequest run = request("stop", yaml);
+  RunRequest run = request("stop", without_poses());
   run.dataset = folder_.path() / "stop_data";
-  testing::write_recording(run.dataset, world.camera(), events, std::span(&blank, 1),
-                           poses_until(kStop_s, steady_glide));
+  write_steady(run.dataset, events, kStop_s);
   EXPECT_THAT(error_of([&] { return run_odometry(run); }),
               HasSubstr("no pose follows the start that was found at"));
 }
@@ -226,14 +231,9 @@ TEST_F(OdometryModule, RefusesAStartThatTheNextEventsDoNotLieOn) {
                       static_cast<std::uint16_t>(160 * random.uniform(i, 0)),
                       static_cast<std::uint16_t>(120 * random.uniform(i, 1)),
                       static_cast<std::int8_t>(random.uniform(i, 2) < 0.5 ? 1 : -1)});
-  const testing::StampedPicture blank{0, ImageU8(world.camera().width, world.camera().height)};
-  std::string yaml = adjusted();
-  yaml.replace(yaml.find("truth_s: 0.2, truth_fraction: 0.4"), 33,
-               "truth_s: 0, initial_depth_m: 2.2");
-  RunRequest run = request("noise", yaml);
+  RunRequest run = request("noise", without_poses());
   run.dataset = folder_.path() / "noisy";
-  testing::write_recording(run.dataset, world.camera(), events, std::span(&blank, 1),
-                           poses_until(kEnd_s, steady_glide));
+  write_steady(run.dataset, events, kEnd_s);
   EXPECT_THAT(error_of([&] { return run_odometry(run); }),
               HasSubstr("does not explain the events after it"));
   EXPECT_FALSE(fs::exists(run.output));

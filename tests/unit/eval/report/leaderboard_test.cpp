@@ -168,6 +168,20 @@ TEST(Leaderboard, ARunWithoutAPoseIsAFailureAndNotAbsent) {
   EXPECT_EQ(cell(leaderboard_table(board), 1, "walls").text, "no pose");
 }
 
+// It is aligned before it is scored, so that its errors say as much as those of any run.
+TEST(Leaderboard, ARunInAWorldOfItsOwnStandsOnEveryBoardThatItHasAScoreOf) {
+  LeaderboardEntry own = judged("own start", "walls", 0.4, 0.004);
+  own.metrics.set("trajectory.aligned_freedoms", 7);
+  own.metrics.set("trajectory.se3.ate_rmse_m", std::nullopt);
+  LeaderboardEntry given = judged("given start", "walls", 0.5, 0.005);
+  given.metrics.set("trajectory.se3.ate_rmse_m", 0.002);
+  const std::vector<Leaderboard> boards = leaderboards(std::vector{own, given});
+  ASSERT_EQ(boards.size(), 2U);
+  EXPECT_EQ(methods_of(boards[0]), (std::vector<std::string>{"own start", "given start"}));
+  EXPECT_EQ(boards[1].key, "trajectory.se3.ate_rmse_m");
+  EXPECT_EQ(methods_of(boards[1]), std::vector<std::string>{"given start"});
+}
+
 TEST(Leaderboard, RanksWithinAClassAlone) {
   std::vector<LeaderboardEntry> entries{of_class(scored("given a map", "walls", 0.1), kTracking),
                                         of_class(scored("no map", "walls", 0.4), kOdometry),
