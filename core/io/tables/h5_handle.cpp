@@ -3,6 +3,11 @@
 namespace saccade {
 namespace {
 
+/// A file that could not be closed for lack of space stays behind half closed, and HDF5's clean-up at
+/// the end of the program would crash on it. Everything else is closed by its handle. Said as the
+/// program is loaded, because HDF5 takes it only before its first use, which need not be one of ours.
+[[maybe_unused]] const herr_t kNoCleanUp = H5dont_atexit();
+
 std::recursive_mutex& h5_mutex() {
   static std::recursive_mutex mutex;
   return mutex;
@@ -11,9 +16,6 @@ std::recursive_mutex& h5_mutex() {
 }  // namespace
 
 H5Lock::H5Lock() : lock_(h5_mutex()) {
-  // A file that could not be closed for lack of space stays behind half closed, and HDF5's clean-up
-  // at the end of the program would crash on it. Everything else is closed by its handle.
-  [[maybe_unused]] static const herr_t once = H5dont_atexit();
   H5Eget_auto2(H5E_DEFAULT, &handler_, &handler_data_);
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
