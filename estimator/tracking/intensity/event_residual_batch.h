@@ -21,6 +21,10 @@ struct LogIntensityObservation {
   float time_s;           ///< after the instant of the pose that is sought
   float log_intensity;
   float variance;  ///< of the log intensity [log units^2]
+  /// All log intensities within so much of it are as likely [log units]: only what is farther off is
+  /// a residual, and what is not says nothing.
+  float slack = 0;
+  float trust = 1;  ///< 0..1: factor of its weight
 };
 
 /// Up to kCapacity observations in an iteration of the intensity tracker, structure of
@@ -42,7 +46,8 @@ class EventResidualBatch {
     Eigen::Matrix<float, 6, 1> velocity;
   };
 
-  /// Residuals r = l - L(a) of the observed log intensity l from the map's at the reprojection a,
+  /// Residuals r = l - L(a) of the observed log intensity l, or of the nearest one within its slack,
+  /// from the map's at the reprojection a,
   ///   a = atlas_px + atlas_per_pixel (pixel - pi(p)),
   ///   p = p_c - t (v + w x p_c),   p_c = R P + t_c
   /// and the rows of the Jacobian of L by the camera's own small motion, (a, b) = fx, fy times the
@@ -59,7 +64,7 @@ class EventResidualBatch {
     float position_sigma_px;  ///< s: where between two samples an edge is
   };
 
-  /// Weights (n / sigma)^2 / (1 + (r / (2.4 sigma))^2) (Cauchy) with
+  /// Weights trust (n / sigma)^2 / (1 + (r / (2.4 sigma))^2) (Cauchy) with
   ///   sigma^2 = P + R,   R = n^2 + s^2 IntensityMap::variance()
   /// and P the observation's own variance: at most 1, where the map is flat and the pixel's log
   /// intensity is exact; 0 where the map is not visible.
@@ -76,6 +81,9 @@ class EventResidualBatch {
   /// Of observation `i`, after weigh(): the residual, NaN where the map is not visible; the variance
   /// R of the map; and what it holds per px^2 of a position's.
   [[nodiscard]] float residual(int i) const;
+  /// (r / (2.4 sigma))^2, and n^2 / (n^2 + P), 0 where the map is not visible.
+  [[nodiscard]] float relative(int i) const;
+  [[nodiscard]] float known(int i) const;
   [[nodiscard]] float log_intensity(int i) const;  ///< l
   [[nodiscard]] float map_variance(int i) const;
   [[nodiscard]] float variance_per_px2(int i) const;
@@ -90,6 +98,7 @@ class EventResidualBatch {
   int count_ = 0;
   alignas(64) Floats point_x_{}, point_y_{}, point_z_{};
   alignas(64) Floats pixel_x_{}, pixel_y_{}, time_s_{}, log_intensity_{}, variance_{};
+  alignas(64) Floats slack_{}, trust_{};
   alignas(64) Floats atlas_x_{}, atlas_y_{}, scale_xx_{}, scale_xy_{}, scale_yx_{}, scale_yy_{};
   alignas(64) Floats ray_x_{}, ray_y_{}, inverse_depth_{};
   alignas(64) Floats at_x_{}, at_y_{}, visible_{}, residual_{}, relative_{}, weight_{}, known_{};

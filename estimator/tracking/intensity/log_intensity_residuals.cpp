@@ -69,7 +69,8 @@ LogIntensityResiduals::LogIntensityResiduals(const IntensityOptions& options,
       undistortion_(camera),
       map_(map),
       view_(map, margin_of(options, camera), spacing_of(camera)),
-      pixels_(camera.width, camera.height) {
+      pixels_(camera.width, camera.height),
+      regions_(camera.width, camera.height) {
   set_contrast(ThresholdEstimator::kExpected);
 }
 
@@ -98,6 +99,7 @@ void LogIntensityResiduals::reset() {
 void LogIntensityResiduals::restart(const Rigid3& map_from_camera, float sigma) {
   first_steep_pixel_ = 0;
   first_updated_pixel_ = 0;
+  regions_.reset();
   draw_view(map_from_camera);
   read_pixels_from_map(sigma);
 }
@@ -133,6 +135,7 @@ void LogIntensityResiduals::load(std::span<const Event> events, TimeNs t_ns, dou
                                  const EventResidualBatch::Motion& motion) {
   batch_count_ = 0;
   loaded_pixels_.clear();
+  loaded_regions_.clear();
   bursts_.clear();
   learn_sensor();
   bool has_constraints = !(options_.no_event_ratio > 0);
@@ -267,18 +270,28 @@ void LogIntensityResiduals::load_no_event_constraints(std::size_t count,
   first_steep_pixel_ = (first_steep_pixel_ + kNext) % every;
   for (std::size_t i = first_steep_pixel_; i < steep_pixels_.size(); i += every) {
     const std::size_t pixel = steep_pixels_[i];
-    const int x = static_cast<int>(pixel % static_cast<std::size_t>(camera_.width));
-    const int y = static_cast<int>(pixel / static_cast<std::size_t>(camera_.width));
-    LogIntensityObservation observation;
-    observation.log_intensity =
-        options_.half_threshold ? pixels_.between_events(pixel) : pixels_.at_last_event(pixel);
-    observation.pixel = undistortion_(x, y);
-    observation.time_s = 0;
-    observation.variance = pixels_.variance(pixel) + no_event_variance_;
+    const LogIntensityObservation observation = no_event_constraint(pixel);
     const MapSample* at = find_sample(observation.pixel, 0, motion);
-    if (at != nullptr && is_known_within_threshold(observation, *at, motion))
+    if (at != nullptr &&
+        (!pixels_.has_fired(pixel) || is_known_within_threshold(observation, *at, motion)))
       add(observation, *at, kNotCorrected);
   }
+}
+
+LogIntensityObservation LogIntensityResiduals::no_event_constraint(std::size_t pixel) const {
+  const int x = static_cast<int>(pixel % static_cast<std::size_t>(camera_.width));
+  const int y = static_cast<int>(pixel / static_cast<std::size_t>(camera_.width));
+  const float variance = pixels_.variance(pixel);
+  // The middle of the interval of one that has not fired since it was read from the map is where the
+  // camera was then: as a measurement it would hold the camera back. That the pixel is within its
+  // interval is true all the same, and of half of it, which is as far as the map is right at edges.
+  constexpr float kSlackThresholds = 0.5F;
+  if (!pixels_.has_fired(pixel))
+    return {undistortion_(x, y), 0, pixels_.at_last_event(pixel), variance,
+            kSlackThresholds * threshold_};
+  const float value =
+      options_.half_threshold ? pixels_.between_events(pixel) : pixels_.at_last_event(pixel);
+  return {undistortion_(x, y), 0, value, variance + no_event_variance_};
 }
 
 bool LogIntensityResiduals::is_known_within_threshold(
@@ -310,9 +323,12 @@ void LogIntensityResiduals::list_steep_pixels() {
     }
 }
 
-void LogIntensityResiduals::add(const LogIntensityObservation& observation, const MapSample& at,
+void LogIntensityResiduals::add(LogIntensityObservation observation, const MapSample& at,
                                 std::uint32_t pixel) {
+  const std::size_t region = regions_.region_of(observation.pixel);
+  observation.trust = regions_.trust(region);
   loaded_pixels_.push_back(pixel);
+  loaded_regions_.push_back(region);
   if (batch_count_ == 0 || batches_[batch_count_ - 1].size() == EventResidualBatch::kCapacity) {
     if (batch_count_ == batches_.size()) batches_.emplace_back();
     batches_[batch_count_++].clear();
@@ -352,7 +368,16 @@ EventResidualBatch::Sums LogIntensityResiduals::evaluate(const EventResidualBatc
   return sums;
 }
 
+void LogIntensityResiduals::learn_regions() {
+  std::size_t i = 0;
+  for (std::size_t k = 0; k < batch_count_; ++k)
+    for (int j = 0; j < batches_[k].size(); ++j)
+      regions_.add(loaded_regions_[i++], batches_[k].relative(j), batches_[k].known(j));
+  regions_.learn();
+}
+
 void LogIntensityResiduals::correct(double image_speed_px) {
+  learn_regions();
   const double blind_px = blind_s() * image_speed_px;
   const auto blind_px2 = static_cast<float>(std::min(1.0, blind_px * blind_px));
   for_each_measured_pixel(
@@ -360,7 +385,8 @@ void LogIntensityResiduals::correct(double image_speed_px) {
         if (thresholds_)
           thresholds_->measure(pixel, batch.log_intensity(j) - excess,
                                pose_weight(batch.variance_per_px2(j)));
-        pixels_.correct(pixel, excess, batch.map_variance(j));
+        // What does not fit may be something that the map does not hold.
+        pixels_.correct(pixel, excess, (1 + batch.relative(j)) * batch.map_variance(j));
         pixels_.move(pixel, 0, blind_px2 * batch.variance_per_px2(j));
       });
 }
@@ -372,6 +398,7 @@ void LogIntensityResiduals::update_pixels_without_events(const EventResidualBatc
   const float noise = kVariances * no_event_variance_;
   batch_count_ = 0;
   loaded_pixels_.clear();
+  loaded_regions_.clear();
   first_updated_pixel_ = (first_updated_pixel_ + 1) % kUpdatePasses;
   const std::size_t count =
       static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);

@@ -12,6 +12,7 @@
 #include "estimator/tracking/intensity/event_residual_batch.h"
 #include "estimator/tracking/intensity/intensity_options.h"
 #include "estimator/tracking/intensity/pixel_log_intensity.h"
+#include "estimator/tracking/intensity/region_trust.h"
 #include "estimator/tracking/intensity/threshold_estimator.h"
 #include "estimator/tracking/intensity_map.h"
 #include "estimator/tracking/map_view.h"
@@ -54,7 +55,8 @@ class LogIntensityResiduals {
   [[nodiscard]] EventResidualBatch::Sums evaluate(const EventResidualBatch::Motion& motion);
 
   /// Corrects the pixels of the loaded events towards the map at the pose of the last evaluate(),
-  /// each by what it is less certain than the map. After an event a pixel misses what happens while
+  /// each by what it is less certain than the map, and learns how much each region is to be trusted.
+  /// After an event a pixel misses what happens while
   /// it is blind and the image moves at `image_speed_px` per second.
   void correct(double image_speed_px);
 
@@ -93,7 +95,9 @@ class LogIntensityResiduals {
   [[nodiscard]] bool observe_step(int polarity, std::size_t pixel, const MapSample& at,
                                   const EventResidualBatch::Motion& motion,
                                   LogIntensityObservation& observation);
-  /// Whether a pixel without an event is within a threshold of its value: a blind one may have missed
+  /// What a pixel without an event sees, at the time of the pose.
+  [[nodiscard]] LogIntensityObservation no_event_constraint(std::size_t pixel) const;
+  /// Whether a pixel that has fired is within a threshold of its value: a blind one may have missed
   /// the edge beside it.
   [[nodiscard]] bool is_known_within_threshold(const LogIntensityObservation& observation,
                                                const MapSample& at,
@@ -117,7 +121,8 @@ class LogIntensityResiduals {
   /// Some `count` no-event constraints, at the time of the pose.
   void load_no_event_constraints(std::size_t count, const EventResidualBatch::Motion& motion);
   /// `pixel`: the one that correct() will correct.
-  void add(const LogIntensityObservation& observation, const MapSample& at, std::uint32_t pixel);
+  void add(LogIntensityObservation observation, const MapSample& at, std::uint32_t pixel);
+  void learn_regions();
   void prefetch(const Event& event) const;
   /// The map's sample at a node of the view; nullptr where it is not visible.
   [[nodiscard]] const MapSample* sample_at(const Eigen::Vector2f& pixel) const;
@@ -133,6 +138,7 @@ class LogIntensityResiduals {
   EventContrast contrast_;
   std::optional<ThresholdEstimator> thresholds_;  ///< while they are learned
   PixelLogIntensity pixels_;
+  RegionTrust regions_;
   float no_event_variance_;
   float threshold_;  ///< mean of ON and OFF
   EventIntervals intervals_;
@@ -141,6 +147,7 @@ class LogIntensityResiduals {
   std::vector<EventResidualBatch> batches_;
   std::size_t batch_count_ = 0;
   std::vector<std::uint32_t> loaded_pixels_;  ///< of all in the batches, in order
+  std::vector<std::size_t> loaded_regions_;   ///< of the same
   std::vector<std::uint32_t> steep_pixels_;   ///< where the rendered map is steep
   std::size_t first_steep_pixel_ = 0;         ///< of them that was loaded
   std::size_t first_updated_pixel_ = 0;

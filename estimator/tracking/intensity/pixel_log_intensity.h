@@ -56,6 +56,8 @@ class PixelLogIntensity {
   [[nodiscard]] float between_events(std::size_t i) const {
     return pixels_[i].log_intensity + pixels_[i].half_threshold;
   }
+  /// Whether it has, since its value was set.
+  [[nodiscard]] bool has_fired(std::size_t i) const { return pixels_[i].half_threshold != 0; }
   /// Infinite for an unknown pixel.
   [[nodiscard]] float variance(std::size_t i) const { return pixels_[i].variance; }
 

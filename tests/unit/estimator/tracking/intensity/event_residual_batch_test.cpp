@@ -178,6 +178,42 @@ TEST(EventResidualBatch, WeightsAreCauchysOverTheVariancesOfMapAndPixel) {
       }
 }
 
+TEST(EventResidualBatch, TrustScalesTheEquationsAndNotTheEvidence) {
+  const ImageF atlas = some_atlas();
+  Sight here = sight({20, 30}, 2, -0.4F);
+  EventResidualBatch trusted, doubted;
+  trusted.add(here.observation, here.seen);
+  here.observation.trust = 0.25F;
+  doubted.add(here.observation, here.seen);
+  const EventResidualBatch::Sums whole = sums_of(trusted, kEventSigma, atlas);
+  const EventResidualBatch::Sums part = sums_of(doubted, kEventSigma, atlas);
+  EXPECT_TRUE(part.rhs.isApprox(0.25 * whole.rhs, 1e-5));
+  EXPECT_TRUE(part.normal.isApprox(0.25 * whole.normal, 1e-5));
+  EXPECT_EQ(part.known, whole.known);
+  EXPECT_EQ(part.inliers, whole.inliers);
+  EXPECT_EQ(part.squares, whole.squares);
+}
+
+TEST(EventResidualBatch, WithinItsSlackAnObservationSaysNothing) {
+  const ImageF atlas = some_atlas();
+  Sight here = sight({20, 30}, 2, -0.4F);
+  const double far = residual_of(here, some_pose(), Vector6::Zero(), atlas);
+  ASSERT_GT(std::abs(far), 0.2) << "the test needs a residual";
+  here.observation.slack = 0.15F;
+  EXPECT_NEAR(residual_of(here, some_pose(), Vector6::Zero(), atlas),
+              far - std::copysign(0.15, far), 1e-6);
+  EventResidualBatch beyond, within;
+  beyond.add(here.observation, here.seen);
+  EXPECT_GT(sums_of(beyond, kEventSigma, atlas).normal.norm(), 0);
+  here.observation.slack = 2;
+  within.add(here.observation, here.seen);
+  const EventResidualBatch::Sums sums = sums_of(within, kEventSigma, atlas);
+  EXPECT_EQ(sums.normal.norm(), 0);
+  EXPECT_EQ(sums.rhs.norm(), 0);
+  EXPECT_GT(sums.known, 0) << "it agrees with the map";
+  EXPECT_EQ(sums.inliers, sums.known);
+}
+
 TEST(EventResidualBatch, WhatIsUncertainWeighsLess) {
   const ImageF atlas = some_atlas();
   const auto normal_of = [&](float variance, float position_sigma_px) {

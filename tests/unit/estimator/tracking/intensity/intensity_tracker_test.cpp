@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "tests/unit/estimator/tracking/corner_recording.h"
@@ -266,6 +268,61 @@ TEST(IntensityTracker, PixelsBetweenTheirEventsHoldThePose) {
   const double with_pixels = error_with(1, true);
   EXPECT_LT(with_pixels, 0.9 * events_alone);
   EXPECT_LT(with_pixels, error_with(1, false)) << "half a threshold nearer to the truth";
+}
+
+/// A part of the image before which something moves: it shows the events of another part.
+class Stranger {
+ public:
+  [[nodiscard]] static bool covers(const Event& event) {
+    return event.x >= kLeft && event.x < kLeft + kSide && event.y >= kTop && event.y < kTop + kSide;
+  }
+  /// Its own events, and those of the rest if the camera moves, too.
+  [[nodiscard]] static Events recorded(bool camera_moves) {
+    Events events;
+    for (Event event : resolved_recording().events) {
+      if (camera_moves && !covers(event)) events.push_back(event);
+      if (event.x < kShift_px) continue;
+      event.x = static_cast<std::uint16_t>(event.x - kShift_px);
+      if (covers(event)) events.push_back(event);
+    }
+    return events;
+  }
+
+ private:
+  static constexpr int kLeft = 60, kTop = 40, kSide = 48, kShift_px = 50;
+};
+
+/// What pixels tell that are blind for a while after each event.
+Events by_blind_pixels(const Events& events) {
+  constexpr TimeNs kBlind_ns = 2'000'000;
+  std::map<std::pair<int, int>, TimeNs> last_ns;
+  Events seen;
+  for (const Event& event : events) {
+    const auto [last, is_first] = last_ns.try_emplace({event.x, event.y}, event.t_ns);
+    if (!is_first && event.t_ns - last->second < kBlind_ns) continue;
+    last->second = event.t_ns;
+    seen.push_back(event);
+  }
+  return seen;
+}
+
+TEST(IntensityTracker, WhatMovesBeforeTheMapPullsLittle) {
+  IntensityTracking tracking;
+  const Errors errors =
+      resolved_errors(from(0, tracking->track({by_blind_pixels(Stranger::recorded(true))})));
+  EXPECT_LT(errors.mean, 0.2) << "all parts trusted alike: 0.24";
+  EXPECT_LT(errors.largest, 0.45) << "0.76";
+}
+
+TEST(IntensityTracker, PixelsThatNeverFiredHoldThePoseBesideSomethingThatMoves) {
+  IntensityTracking tracking;
+  const std::vector<TrackedPose> poses =
+      tracking->track({by_blind_pixels(Stranger::recorded(false))});
+  ASSERT_GT(poses.size(), 5U);
+  double largest = 0;
+  for (const TrackedPose& pose : poses)
+    largest = std::max(largest, (corner_motion(0).inverse() * pose.world_from_camera).log().norm());
+  EXPECT_LT(largest, 0.017) << "all parts trusted alike: 0.021";
 }
 
 TEST(IntensityTracker, WithoutTheMapInViewItIsLost) {

@@ -44,6 +44,17 @@ TEST(PixelLogIntensity, RemembersItsLastEvent) {
   EXPECT_EQ(pixels.last_event_ns(kPixel), 30) << "reading it from the map is no event";
 }
 
+TEST(PixelLogIntensity, KnowsWhetherItHasFiredSinceItWasSet) {
+  PixelLogIntensity pixels = some_pixels();
+  EXPECT_FALSE(pixels.has_fired(kPixel));
+  pixels.add_event(kPixel, -1, 10);
+  pixels.correct(kPixel, 0.1F, 0.01F);
+  EXPECT_TRUE(pixels.has_fired(kPixel));
+  EXPECT_FALSE(pixels.has_fired(kPixel + 1));
+  pixels.set(kPixel, 1, 0);
+  EXPECT_FALSE(pixels.has_fired(kPixel));
+}
+
 TEST(PixelLogIntensity, BetweenEventsAPixelIsHalfwayToTheNextOfItsKind) {
   PixelLogIntensity pixels = some_pixels();
   pixels.set(kPixel, -1, 0);
