@@ -1,35 +1,88 @@
 #include "eval/metrics/trajectory/reprojection.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace saccade {
 namespace {
 
 constexpr std::size_t kMaxInstants = 2000;
 
+/// Points whose errors are computed together, as vector code: each has its own place in the sums, so that
+/// these do not depend on the processor.
+constexpr std::size_t kTogether = 8;
+
+/// The map in columns [m], padded with points behind every camera.
+class PointColumns {
+ public:
+  explicit PointColumns(std::span<const Eigen::Vector3f> points)
+      : size_((points.size() + kTogether - 1) / kTogether * kTogether) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      columns_[axis].assign(size_, std::numeric_limits<double>::quiet_NaN());
+      for (std::size_t i = 0; i < points.size(); ++i)
+        columns_[axis][i] = static_cast<double>(points[i](static_cast<Eigen::Index>(axis)));
+    }
+  }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] const double* axis(std::size_t axis) const { return columns_[axis].data(); }
+
+ private:
+  std::size_t size_;
+  std::array<std::vector<double>, 3> columns_;
+};
+
+/// K [R t] of a pose: a point times its depth in the image.
+using Projection = Eigen::Matrix<double, 3, 4>;
+
+Projection projection(const PinholeCamera& camera, const Rigid3& world_from_camera) {
+  const Rigid3 camera_from_world = world_from_camera.inverse();
+  Projection p;
+  p << camera_from_world.rotation_matrix(), camera_from_world.translation();
+  return camera.matrix() * p;
+}
+
 struct Sum {
   double squares = 0;
-  double max = 0;
+  double max_square = 0;
   std::size_t count = 0;
 };
 
-Sum errors_at(std::span<const Eigen::Vector3f> points, const Rigid3& camera_from_world_estimated,
-              const Rigid3& camera_from_world_true, const PinholeCamera& camera) {
-  const double diagonal_px = std::hypot(camera.width, camera.height);
+Sum errors_at(const PointColumns& points, const Projection& estimate, const Projection& truth,
+              const PinholeCamera& camera) {
+  const double right = camera.width - 1;
+  const double bottom = camera.height - 1;
+  const double most = static_cast<double>(camera.width) * camera.width +
+                      static_cast<double>(camera.height) * camera.height;
+  std::array<double, kTogether> squares{}, greatest{}, seen{};
+  for (std::size_t first = 0; first < points.size(); first += kTogether)
+    for (std::size_t lane = 0; lane < kTogether; ++lane) {
+      const double x = points.axis(0)[first + lane];
+      const double y = points.axis(1)[first + lane];
+      const double z = points.axis(2)[first + lane];
+      const auto row = [&](const Projection& p, Eigen::Index r) {
+        return p(r, 0) * x + p(r, 1) * y + p(r, 2) * z + p(r, 3);
+      };
+      const double true_depth = row(truth, 2);
+      const double u = row(truth, 0) / true_depth;
+      const double v = row(truth, 1) / true_depth;
+      const double depth = row(estimate, 2);
+      const double du = row(estimate, 0) / depth - u;
+      const double dv = row(estimate, 1) / depth - v;
+      const double error = du * du + dv * dv;
+      const bool is_seen = (true_depth > 0) & (u >= 0) & (v >= 0) & (u <= right) & (v <= bottom);
+      const bool is_before = (depth > 0) & (error < most);
+      const double square = is_seen ? (is_before ? error : most) : 0;
+      squares[lane] += square;
+      greatest[lane] = square > greatest[lane] ? square : greatest[lane];
+      seen[lane] += is_seen ? 1 : 0;
+    }
   Sum sum;
-  for (const Eigen::Vector3f& point : points) {
-    const Eigen::Vector3d in_world = point.cast<double>();
-    const Eigen::Vector3d truly = camera_from_world_true * in_world;
-    if (!(truly.z() > 0)) continue;
-    const Eigen::Vector2d pixel = camera.project(truly);
-    if (!camera.contains(pixel)) continue;
-    const Eigen::Vector3d estimated = camera_from_world_estimated * in_world;
-    double error = diagonal_px;
-    if (estimated.z() > 0) error = std::min(error, (camera.project(estimated) - pixel).norm());
-    sum.squares += error * error;
-    sum.max = std::max(sum.max, error);
-    ++sum.count;
+  for (std::size_t lane = 0; lane < kTogether; ++lane) {
+    sum.squares += squares[lane];
+    sum.max_square = std::max(sum.max_square, greatest[lane]);
+    sum.count += static_cast<std::size_t>(seen[lane]);
   }
   return sum;
 }
@@ -39,15 +92,16 @@ Sum errors_at(std::span<const Eigen::Vector3f> points, const Rigid3& camera_from
 ReprojectionSeries reproject(std::span<const Eigen::Vector3f> points_in_world,
                              const ScoredSamples& samples, const PinholeCamera& camera) {
   ReprojectionSeries series;
+  const PointColumns points(points_in_world);
   const std::size_t stride = (samples.t_s.size() + kMaxInstants - 1) / kMaxInstants;
   Sum all;
   for (std::size_t i = 0; i < samples.t_s.size(); i += stride) {
-    const Sum sum = errors_at(points_in_world, samples.estimated[i].inverse(),
-                              samples.truth[i].inverse(), camera);
+    const Sum sum = errors_at(points, projection(camera, samples.estimated[i]),
+                              projection(camera, samples.truth[i]), camera);
     if (sum.count == 0) continue;
     series.t_s.push_back(samples.t_s[i]);
     series.rms_px.push_back(std::sqrt(sum.squares / static_cast<double>(sum.count)));
-    series.max_px.push_back(sum.max);
+    series.max_px.push_back(std::sqrt(sum.max_square));
     all.squares += sum.squares;
     all.count += sum.count;
   }

@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+
+#include "core/random.h"
+#include "core/rigid3.h"
 
 namespace saccade {
 namespace {
@@ -43,6 +47,36 @@ TEST(Reprojection, CountsOnlyPointsThatTheTruePoseSees) {
   const std::vector<Eigen::Vector3f> points{{0, 0, 2}, {0, 0, -2}, {5, 0, 2}};
   const ReprojectionSeries s = reproject(points, samples({moved_by(0.02, 0, 0)}), kCamera);
   EXPECT_NEAR(s.rms_px[0], 1, 1e-6);
+}
+
+TEST(Reprojection, OfManyPointsIsThatOfEachOfThem) {
+  // 37 points all around the camera: no whole number of those that are computed together.
+  const Random random(5);
+  std::vector<Eigen::Vector3f> points;
+  for (std::uint64_t i = 0; i < 37; ++i)
+    points.emplace_back(Eigen::Vector3d(2 * random.uniform(0, i) - 1, 2 * random.uniform(1, i) - 1,
+                                        4 * random.uniform(2, i) - 1)
+                            .cast<float>());
+  const Rigid3 estimate(so3_exp({0.02, -0.01, 0.03}), {0.05, -0.02, 1});
+  double squares = 0, max = 0, seen = 0;
+  for (const Eigen::Vector3f& point : points) {
+    const Eigen::Vector3d truly = point.cast<double>();
+    if (truly.z() <= 0 || !kCamera.contains(kCamera.project(truly))) continue;
+    const Eigen::Vector3d estimated = estimate.inverse() * truly;
+    const double diagonal = std::hypot(100, 80);
+    const double error =
+        estimated.z() > 0
+            ? std::min(diagonal, (kCamera.project(estimated) - kCamera.project(truly)).norm())
+            : diagonal;
+    squares += error * error;
+    max = std::max(max, error);
+    ++seen;
+  }
+  ASSERT_GT(seen, 9) << "the test needs points that are seen";
+  const ReprojectionSeries s = reproject(points, samples({estimate}), kCamera);
+  ASSERT_EQ(s.t_s.size(), 1U);
+  EXPECT_NEAR(s.rms_px[0], std::sqrt(squares / seen), 1e-9);
+  EXPECT_NEAR(s.max_px[0], max, 1e-9);
 }
 
 TEST(Reprojection, BehindTheEstimatedCameraCostsTheDiagonal) {
