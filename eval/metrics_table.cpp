@@ -151,9 +151,9 @@ void add_rates(std::string& text, const Metrics& metrics) {
 
 void add_sharpness(std::string& text, const Metrics& metrics) {
   const Shown of(metrics, "");
-  text += fmt::format("  sharpness: raw {}, stabilized {}, by the true rotation {}\n",
+  text += fmt::format("  sharpness: raw {}, stabilized {} ({} times), by the true rotation {}\n",
                       of.fixed("sharpness.raw", 1), of.fixed("sharpness.stabilized", 1),
-                      of.fixed("sharpness.truth", 1));
+                      of.fixed("sharpness.fwl", 2), of.fixed("sharpness.truth", 1));
   if (of.has("stabilization.within_1px"))
     text += fmt::format("  {} % of the events within 1 px of their true position\n",
                         of.fixed("stabilization.within_1px", 2));

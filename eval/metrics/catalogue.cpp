@@ -157,6 +157,7 @@ std::vector<MetricInfo> rotation_rows() {
       {.key = "sharpness.stabilized", .label = "sharpness", .better = kHigher,
        .needs = "stabilized events", .board = "sharpness of the stabilized view",
        .in_tables = true},
+      {.key = "sharpness.fwl", .better = kHigher, .needs = "stabilized events"},
       {.key = "sharpness.raw", .better = kNeither, .needs = "stabilized events"},
       {.key = "sharpness.truth", .better = kNeither, .needs = "stabilized events, ground truth"},
       {.key = "mosaic.ssim", .label = "mosaic SSIM", .better = kHigher, .needs = kTruePanorama,

@@ -1,5 +1,7 @@
 #include "eval/metrics/sharpness.h"
 
+#include <optional>
+
 #include "core/camera.h"
 #include "core/io/events/event_file.h"
 #include "core/process/parallel.h"
@@ -64,11 +66,27 @@ double sharpness(const ImageF& image) {
   return n > 0 ? squares / n - sum * sum / (n * n) : 0;
 }
 
+namespace {
+
+struct Window {
+  double raw = 0, stabilized = 0, truth = 0;
+  std::size_t events = 0, within = 0;
+};
+
+/// Of the windows whose events as they fired are sharp at all; nullopt where none are.
+std::optional<double> mean_sharpening(const std::vector<Window>& windows) {
+  double sum = 0, count = 0;
+  for (const Window& window : windows) {
+    if (!(window.raw > 0)) continue;
+    sum += window.stabilized / window.raw;
+    ++count;
+  }
+  return count > 0 ? std::optional(sum / count) : std::nullopt;
+}
+
+}  // namespace
+
 Metrics score_stabilization(const StabilizedRun& run, const Dataset& dataset) {
-  struct Window {
-    double raw = 0, stabilized = 0, truth = 0;
-    std::size_t events = 0, within = 0;
-  };
   std::vector<Window> windows(run.windows.size());
   parallel_for(windows.size(), [&](std::size_t i) {
     const WindowImages images = images_of(run, i, dataset);
@@ -88,6 +106,7 @@ Metrics score_stabilization(const StabilizedRun& run, const Dataset& dataset) {
   const auto count = static_cast<double>(windows.size());
   metrics.set("sharpness.raw", sum.raw / count);
   metrics.set("sharpness.stabilized", sum.stabilized / count);
+  metrics.set("sharpness.fwl", mean_sharpening(windows));
   if (dataset.groundtruth().empty()) return metrics;
   metrics.set("sharpness.truth", sum.truth / count);
   if (sum.events > 0)

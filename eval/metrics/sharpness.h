@@ -38,7 +38,8 @@ struct WindowImages {
 /// Variance of an image's pixels: large where events of one edge fall on one line.
 [[nodiscard]] double sharpness(const ImageF& image);
 
-/// sharpness.{raw,stabilized,truth}, means over the windows, and stabilization.within_1px, the
+/// Means over the windows: sharpness.{raw,stabilized,truth}, and sharpness.fwl, stabilized / raw of each
+/// window (the flow warp loss of Stoffregen et al., ECCV 2020). And stabilization.within_1px, the
 /// fraction of the events within a pixel of their true position.
 [[nodiscard]] Metrics score_stabilization(const StabilizedRun& run, const Dataset& dataset);
 

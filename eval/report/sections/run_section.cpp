@@ -38,6 +38,7 @@ constexpr std::pair<const char*, const char*> kKeyNumbers[] = {
     {"orientation.rate_rmse_percent", "of its peak"},
     {"sharpness.raw", "sharpness of the events as fired"},
     {"sharpness.stabilized", "stabilized"},
+    {"sharpness.fwl", "times as sharp as fired"},
     {"sharpness.truth", "by the true rotation"},
     {"trajectory.coverage", "of the time covered"},
     {"trajectory.poses", "poses"},
