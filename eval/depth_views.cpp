@@ -95,9 +95,16 @@ std::vector<EstimatedView> load_depth_views(const std::filesystem::path& folder)
 }
 
 std::vector<EstimatedView> load_depth_views(const RunFolder& run, const Dataset& dataset) {
+  return load_depth_views(run, dataset, dataset.facts().mean_depth_m);
+}
+
+std::vector<EstimatedView> load_depth_views(const RunFolder& run, const Dataset& dataset,
+                                            const std::optional<double>& mean_depth_m) {
   std::vector<EstimatedView> views = load_depth_views(run.folder);
   if (views.empty() || run.freedom() != Alignment::kSim3) return views;
-  const double scale = truth_from_estimate(score_input(run, dataset)).scale;
+  TrajectoryScoreInput input = score_input(run, dataset);
+  input.mean_depth_m = mean_depth_m;
+  const double scale = truth_from_estimate(input).scale;
   for (EstimatedView& view : views) {
     view.world_from_camera = {view.world_from_camera.rotation(),
                               scale * view.world_from_camera.translation()};

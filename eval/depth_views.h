@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "core/io/dataset/dataset.h"
@@ -24,9 +25,11 @@ struct EstimatedView {
 [[nodiscard]] std::vector<EstimatedView> load_depth_views(const std::filesystem::path& folder);
 
 /// Those of a run, its world as large as the truth's where its own scale is free
-/// (TrajectoryScoreInput::freedom).
+/// (TrajectoryScoreInput::freedom), by the dataset's mean depth or the one given; nullopt: unknown.
 [[nodiscard]] std::vector<EstimatedView> load_depth_views(const RunFolder& run,
                                                           const Dataset& dataset);
+[[nodiscard]] std::vector<EstimatedView> load_depth_views(
+    const RunFolder& run, const Dataset& dataset, const std::optional<double>& mean_depth_m);
 
 /// One view from a depth map (EXR: Z or the only channel [m], variance [m^2] where there is one; 0
 /// = unknown; undistorted) at `t_s`, from the true pose.

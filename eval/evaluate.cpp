@@ -110,7 +110,7 @@ Metrics score_refined(const std::filesystem::path& folder, const RunFolder& run,
 
 Metrics score_run(const RunFolder& run, const Dataset& dataset,
                   const std::optional<double>& mean_depth_m) {
-  const std::vector<EstimatedView> depths = load_depth_views(run, dataset);
+  const std::vector<EstimatedView> depths = load_depth_views(run, dataset, mean_depth_m);
   return score(run, dataset, depths, compare_views(depths, dataset), mean_depth_m);
 }
 
@@ -118,10 +118,10 @@ Metrics evaluate_run(const std::filesystem::path& run_folder, const EvaluateOpti
   check_depth(options.mean_depth_m);
   const RunFolder run = RunFolder::open(run_folder);
   const Dataset dataset = run.open_dataset(options.dataset);
-  const std::vector<EstimatedView> depths = load_depth_views(run, dataset);
-  const std::vector<DepthErrors> depth_errors = compare_views(depths, dataset);
   const std::optional<double> mean_depth_m =
       options.mean_depth_m ? options.mean_depth_m : dataset.facts().mean_depth_m;
+  const std::vector<EstimatedView> depths = load_depth_views(run, dataset, mean_depth_m);
+  const std::vector<DepthErrors> depth_errors = compare_views(depths, dataset);
   Metrics metrics = score(run, dataset, depths, depth_errors, mean_depth_m);
   if (options.refined)
     merge(metrics,

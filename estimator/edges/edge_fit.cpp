@@ -67,16 +67,19 @@ struct FitSums {
 }  // namespace
 
 EdgePrior edge_prior(const Edgel& edge, const EdgeUnknowns& unknowns,
-                     const ProjectedLandmarks& landmarks, const LandmarkNoise& noise) {
+                     const ProjectedLandmarks& landmarks) {
   constexpr double kReach_px = 1.5;
   constexpr double kTolerance = 0.1;
+  // A landmark and the edge are measurements of one edge from two views: so much may lie between them
+  // across the edge, and in depth, relative, beside what the landmark's own sigma says.
+  constexpr double kAcrossSigma_px = 0.1;
+  constexpr double kDepthSigma = 0.003;
   EdgePrior prior{unknowns, EdgeNoise::prior_sigma(unknowns[0])};
-  if (noise.sigma_px <= 0) return prior;
   if (const auto* landmark = landmarks.nearest(edge, kReach_px, kTolerance)) {
     prior.mean[0] = landmark->inverse_depth;
-    prior.sigma[0] = std::hypot(landmark->sigma, noise.depth_sigma * landmark->inverse_depth);
+    prior.sigma[0] = std::hypot(landmark->sigma, kDepthSigma * landmark->inverse_depth);
     prior.mean[1] = edge.normal.cast<double>().dot(landmark->pixel - edge.pixel.cast<double>());
-    prior.sigma[1] = noise.sigma_px;
+    prior.sigma[1] = kAcrossSigma_px;
   }
   return prior;
 }

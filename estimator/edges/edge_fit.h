@@ -15,17 +15,11 @@ struct EdgePrior {
   EdgeUnknowns sigma;
 };
 
-/// How well a landmark tells where the edge is that it lies on.
-struct LandmarkNoise {
-  double sigma_px = 0.1;       ///< across the edge; 0: landmarks constrain nothing
-  double depth_sigma = 0.003;  ///< relative, beside the landmark's own
-};
-
 /// The prior of an edge: EdgeNoise's about `unknowns`, and of depth and position by the landmark that
 /// the edge lies on, within 1.5 px and a tenth of its inverse depth, where there is one. It wants a
 /// robust loss: not every landmark is on the edge.
 [[nodiscard]] EdgePrior edge_prior(const Edgel& edge, const EdgeUnknowns& unknowns,
-                                   const ProjectedLandmarks& landmarks, const LandmarkNoise& noise);
+                                   const ProjectedLandmarks& landmarks);
 
 /// An edge by itself, the camera's path being known: its unknowns by Gauss-Newton with the weights
 /// of Cauchy's loss (EdgeNoise), from `start`. `sigma_px` is the standard deviation of an event.

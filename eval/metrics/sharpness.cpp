@@ -1,6 +1,8 @@
 #include "eval/metrics/sharpness.h"
 
+#include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "core/camera.h"
 #include "core/io/events/event_file.h"

@@ -4,8 +4,9 @@ namespace saccade {
 namespace {
 
 /// A file that could not be closed for lack of space stays behind half closed, and HDF5's clean-up at
-/// the end of the program would crash on it. Everything else is closed by its handle. Said as the
-/// program is loaded, because HDF5 takes it only before its first use, which need not be one of ours.
+/// the end of the program would crash on it. Everything else is closed by its handle; what is not would
+/// not be flushed. A static variable, because HDF5 honours the call only before its first other one,
+/// which may come from a test or from another library of the process.
 [[maybe_unused]] const herr_t kNoCleanUp = H5dont_atexit();
 
 std::recursive_mutex& h5_mutex() {

@@ -118,7 +118,7 @@ void PathEdgeProblem::add_edges(std::span<const Landmark> landmarks) {
     const bool is_first_of_view = i == 0 || edges_[i - 1].found.view != edge.found.view;
     if (is_first_of_view) in_view.emplace(landmarks, view_from_world_[edge.found.view], camera_);
     const Edgel& line = this->found(edge.found).edge;
-    const EdgePrior prior = edge_prior(line, edge.unknowns.head<4>(), *in_view, {});
+    const EdgePrior prior = edge_prior(line, edge.unknowns.head<4>(), *in_view);
     Unknowns mean, sigma;
     mean << prior.mean, edge.unknowns[4];
     sigma << prior.sigma, EdgeNoise::kRunSpacingSigma_px;

@@ -149,7 +149,7 @@ class WindowProblem {
   };
 
   [[nodiscard]] EdgePrior prior_of(const FittedEdgel& fitted) const {
-    return edge_prior(fitted.edge, unknowns_of(fitted), landmarks_, options_.landmarks);
+    return edge_prior(fitted.edge, unknowns_of(fitted), landmarks_);
   }
 
   void add_nodes() {

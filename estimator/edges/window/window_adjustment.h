@@ -28,7 +28,6 @@ struct WindowAdjustmentOptions {
   /// is corrected further.
   bool fits_edges = true;
   BundleSolver solver = BundleSolver::kStructured;
-  LandmarkNoise landmarks;
   /// Sigmas of a node from the given path and, tighter, from its neighbours.
   PriorOf prior_of = PriorOf::kImageMotion;
   double pose_sigma_px = 1;          ///< as image motion

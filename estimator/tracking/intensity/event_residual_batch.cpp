@@ -29,8 +29,8 @@ void EventResidualBatch::add(const LogIntensityObservation& observation, const M
   time_s_[i] = observation.time_s;
   log_intensity_[i] = observation.log_intensity;
   variance_[i] = observation.variance;
-  slack_[i] = observation.slack;
-  trust_[i] = observation.trust;
+  dead_zone_[i] = observation.dead_zone;
+  region_weight_[i] = observation.region_weight;
   atlas_x_[i] = at.atlas_px.x();
   atlas_y_[i] = at.atlas_px.y();
   scale_xx_[i] = at.atlas_per_pixel(0, 0);
@@ -125,7 +125,7 @@ void EventResidualBatch::read(const ImageF& atlas, const ImageF& variance) {
     const bool is_known = visible_[i] > 0 && value == value;
     visible_[i] = is_known ? 1.0F : 0.0F;
     const float difference = is_known ? log_intensity_[i] - value : 0;
-    residual_[i] = difference - std::clamp(difference, -slack_[i], slack_[i]);
+    residual_[i] = difference - std::clamp(difference, -dead_zone_[i], dead_zone_[i]);
     slope_x_[i] = is_known ? slope_x_[i] : 0;
     slope_y_[i] = is_known ? slope_y_[i] : 0;
   }
@@ -140,8 +140,9 @@ void EventResidualBatch::weigh(const MapNoise& noise) {
     map_variance_[i] = variance + position * variation_[i];
     const float precision = 1 / (variance_[i] + map_variance_[i]);
     relative_[i] = residual_[i] * residual_[i] * precision * kScale;
-    const float says = slack_[i] > 0 && residual_[i] == 0 ? 0 : trust_[i];
-    weight_[i] = says * visible_[i] * variance * precision / (1 + relative_[i]);
+    const bool is_in_dead_zone = dead_zone_[i] > 0 && residual_[i] == 0;
+    weight_[i] = (is_in_dead_zone ? 0 : region_weight_[i]) * visible_[i] * variance * precision /
+                 (1 + relative_[i]);
     known_[i] = visible_[i] * variance / (variance + variance_[i]);
   }
 }
@@ -178,7 +179,7 @@ float EventResidualBatch::residual(int i) const {
 
 float EventResidualBatch::relative(int i) const { return relative_[static_cast<std::size_t>(i)]; }
 
-float EventResidualBatch::known(int i) const { return known_[static_cast<std::size_t>(i)]; }
+float EventResidualBatch::certainty(int i) const { return known_[static_cast<std::size_t>(i)]; }
 
 float EventResidualBatch::log_intensity(int i) const {
   return log_intensity_[static_cast<std::size_t>(i)];

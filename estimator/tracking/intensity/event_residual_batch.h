@@ -22,9 +22,9 @@ struct LogIntensityObservation {
   float log_intensity;
   float variance;  ///< of the log intensity [log units^2]
   /// All log intensities within so much of it are as likely [log units]: only what is farther off is
-  /// a residual, and what is not says nothing.
-  float slack = 0;
-  float trust = 1;  ///< 0..1: factor of its weight
+  /// a residual. What is not agrees with the map, as evidence, and says nothing of the pose.
+  float dead_zone = 0;
+  float region_weight = 1;  ///< 0..1: factor of its weight in the equations (RegionWeights)
 };
 
 /// Up to kCapacity observations in an iteration of the intensity tracker, structure of
@@ -46,7 +46,7 @@ class EventResidualBatch {
     Eigen::Matrix<float, 6, 1> velocity;
   };
 
-  /// Residuals r = l - L(a) of the observed log intensity l, or of the nearest one within its slack,
+  /// Residuals r = l - L(a) of the observed log intensity l, or of the nearest one within its dead zone,
   /// from the map's at the reprojection a,
   ///   a = atlas_px + atlas_per_pixel (pixel - pi(p)),
   ///   p = p_c - t (v + w x p_c),   p_c = R P + t_c
@@ -64,7 +64,7 @@ class EventResidualBatch {
     float position_sigma_px;  ///< s: where between two samples an edge is
   };
 
-  /// Weights trust (n / sigma)^2 / (1 + (r / (2.4 sigma))^2) (Cauchy) with
+  /// Weights region_weight (n / sigma)^2 / (1 + (r / (2.4 sigma))^2) (Cauchy) with
   ///   sigma^2 = P + R,   R = n^2 + s^2 IntensityMap::variance()
   /// and P the observation's own variance: at most 1, where the map is flat and the pixel's log
   /// intensity is exact; 0 where the map is not visible.
@@ -81,12 +81,12 @@ class EventResidualBatch {
   /// Of observation `i`, after weigh(): the residual, NaN where the map is not visible; the variance
   /// R of the map; and what it holds per px^2 of a position's.
   [[nodiscard]] float residual(int i) const;
-  /// (r / (2.4 sigma))^2, and n^2 / (n^2 + P), 0 where the map is not visible.
-  [[nodiscard]] float relative(int i) const;
-  [[nodiscard]] float known(int i) const;
   [[nodiscard]] float log_intensity(int i) const;  ///< l
   [[nodiscard]] float map_variance(int i) const;
   [[nodiscard]] float variance_per_px2(int i) const;
+  /// (r / (2.4 sigma))^2, and how much that says: n^2 / (n^2 + P), 0 where the map is not visible.
+  [[nodiscard]] float relative(int i) const;
+  [[nodiscard]] float certainty(int i) const;
 
  private:
   using Floats = std::array<float, kCapacity>;
@@ -98,7 +98,7 @@ class EventResidualBatch {
   int count_ = 0;
   alignas(64) Floats point_x_{}, point_y_{}, point_z_{};
   alignas(64) Floats pixel_x_{}, pixel_y_{}, time_s_{}, log_intensity_{}, variance_{};
-  alignas(64) Floats slack_{}, trust_{};
+  alignas(64) Floats dead_zone_{}, region_weight_{};
   alignas(64) Floats atlas_x_{}, atlas_y_{}, scale_xx_{}, scale_xy_{}, scale_yx_{}, scale_yy_{};
   alignas(64) Floats ray_x_{}, ray_y_{}, inverse_depth_{};
   alignas(64) Floats at_x_{}, at_y_{}, visible_{}, residual_{}, relative_{}, weight_{}, known_{};

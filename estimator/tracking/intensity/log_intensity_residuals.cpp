@@ -82,6 +82,7 @@ void LogIntensityResiduals::begin_learning() {
 void LogIntensityResiduals::end_learning() {
   set_contrast(thresholds_->contrast());
   thresholds_.reset();
+  regions_.reset();  // what the poses of the edge tracker left over
 }
 
 void LogIntensityResiduals::set_contrast(const EventContrast& contrast) {
@@ -93,13 +94,13 @@ void LogIntensityResiduals::set_contrast(const EventContrast& contrast) {
 
 void LogIntensityResiduals::reset() {
   intervals_ = {};
+  regions_.reset();
   views_drawn_ = 0;
 }
 
 void LogIntensityResiduals::restart(const Rigid3& map_from_camera, float sigma) {
   first_steep_pixel_ = 0;
   first_updated_pixel_ = 0;
-  regions_.reset();
   draw_view(map_from_camera);
   read_pixels_from_map(sigma);
 }
@@ -282,13 +283,14 @@ LogIntensityObservation LogIntensityResiduals::no_event_constraint(std::size_t p
   const int x = static_cast<int>(pixel % static_cast<std::size_t>(camera_.width));
   const int y = static_cast<int>(pixel / static_cast<std::size_t>(camera_.width));
   const float variance = pixels_.variance(pixel);
-  // The middle of the interval of one that has not fired since it was read from the map is where the
-  // camera was then: as a measurement it would hold the camera back. That the pixel is within its
-  // interval is true all the same, and of half of it, which is as far as the map is right at edges.
-  constexpr float kSlackThresholds = 0.5F;
+  // The middle of the interval of a pixel that has not fired since it was read from the map is what it
+  // saw then: as a measurement that would hold the camera back. All that is known is that the pixel is
+  // within a threshold. Half of one is what holds best: of 84 worlds of one ray per pixel 72 succeed,
+  // with 0.3 thresholds 70; with 0.8 the errors of 71 worlds of four rays grow by 4 %.
+  constexpr float kDeadZoneThresholds = 0.5F;
   if (!pixels_.has_fired(pixel))
     return {undistortion_(x, y), 0, pixels_.at_last_event(pixel), variance,
-            kSlackThresholds * threshold_};
+            kDeadZoneThresholds * threshold_};
   const float value =
       options_.half_threshold ? pixels_.between_events(pixel) : pixels_.at_last_event(pixel);
   return {undistortion_(x, y), 0, value, variance + no_event_variance_};
@@ -326,7 +328,7 @@ void LogIntensityResiduals::list_steep_pixels() {
 void LogIntensityResiduals::add(LogIntensityObservation observation, const MapSample& at,
                                 std::uint32_t pixel) {
   const std::size_t region = regions_.region_of(observation.pixel);
-  observation.trust = regions_.trust(region);
+  observation.region_weight = regions_.weight(region);
   loaded_pixels_.push_back(pixel);
   loaded_regions_.push_back(region);
   if (batch_count_ == 0 || batches_[batch_count_ - 1].size() == EventResidualBatch::kCapacity) {
@@ -372,7 +374,7 @@ void LogIntensityResiduals::learn_regions() {
   std::size_t i = 0;
   for (std::size_t k = 0; k < batch_count_; ++k)
     for (int j = 0; j < batches_[k].size(); ++j)
-      regions_.add(loaded_regions_[i++], batches_[k].relative(j), batches_[k].known(j));
+      regions_.add(loaded_regions_[i++], batches_[k].relative(j), batches_[k].certainty(j));
   regions_.learn();
 }
 

@@ -12,7 +12,7 @@
 #include "estimator/tracking/intensity/event_residual_batch.h"
 #include "estimator/tracking/intensity/intensity_options.h"
 #include "estimator/tracking/intensity/pixel_log_intensity.h"
-#include "estimator/tracking/intensity/region_trust.h"
+#include "estimator/tracking/intensity/region_weights.h"
 #include "estimator/tracking/intensity/threshold_estimator.h"
 #include "estimator/tracking/intensity_map.h"
 #include "estimator/tracking/map_view.h"
@@ -55,7 +55,7 @@ class LogIntensityResiduals {
   [[nodiscard]] EventResidualBatch::Sums evaluate(const EventResidualBatch::Motion& motion);
 
   /// Corrects the pixels of the loaded events towards the map at the pose of the last evaluate(),
-  /// each by what it is less certain than the map, and learns how much each region is to be trusted.
+  /// each by what it is less certain than the map, and learns how much each region counts.
   /// After an event a pixel misses what happens while
   /// it is blind and the image moves at `image_speed_px` per second.
   void correct(double image_speed_px);
@@ -138,7 +138,7 @@ class LogIntensityResiduals {
   EventContrast contrast_;
   std::optional<ThresholdEstimator> thresholds_;  ///< while they are learned
   PixelLogIntensity pixels_;
-  RegionTrust regions_;
+  RegionWeights regions_;  ///< also after a loss: what moves is still there
   float no_event_variance_;
   float threshold_;  ///< mean of ON and OFF
   EventIntervals intervals_;

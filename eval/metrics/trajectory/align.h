@@ -5,6 +5,9 @@
 #include <span>
 #include <vector>
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
 #include "core/rigid3.h"
 #include "core/trajectory.h"
 
@@ -43,6 +46,11 @@ struct Similarity {
   }
   [[nodiscard]] Rigid3 operator*(const Rigid3& pose) const {
     return {rigid.rotation() * pose.rotation(), *this * pose.translation()};
+  }
+  /// estimate ~ inverse() * truth.
+  [[nodiscard]] Similarity inverse() const {
+    const Eigen::Quaterniond back = rigid.rotation().conjugate();
+    return {1 / scale, {back, back * rigid.translation() / -scale}};
   }
 };
 

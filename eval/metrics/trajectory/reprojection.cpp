@@ -3,18 +3,25 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/rigid3.h"
 
 namespace saccade {
 namespace {
 
 constexpr std::size_t kMaxInstants = 2000;
 
-/// Points whose errors are computed together, as vector code: each has its own place in the sums, so that
-/// these do not depend on the processor.
+/// Points whose errors are computed together, as vector code. Each has sums of its own, so that the order
+/// of addition does not depend on how wide the processor's vectors are.
 constexpr std::size_t kTogether = 8;
 
-/// The map in columns [m], padded with points behind every camera.
+/// The map in columns [m], padded with NaN: whatever is compared with it is false, so that no camera sees it.
 class PointColumns {
  public:
   explicit PointColumns(std::span<const Eigen::Vector3f> points)
@@ -33,7 +40,7 @@ class PointColumns {
   std::array<std::vector<double>, 3> columns_;
 };
 
-/// K [R t] of a pose: a point times its depth in the image.
+/// K [R t] of a pose, which takes a point in the world to (u z, v z, z), z being its depth and (u, v) its pixel.
 using Projection = Eigen::Matrix<double, 3, 4>;
 
 Projection projection(const PinholeCamera& camera, const Rigid3& world_from_camera) {

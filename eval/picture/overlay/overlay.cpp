@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/time_search.h"
 #include "eval/metrics/trajectory/scored_samples.h"
+#include "eval/metrics/trajectory/trajectory_metrics.h"
 #include "eval/picture/overlay/depth_occlusion.h"
 #include "eval/picture/view/sensor_view.h"
 
@@ -84,27 +85,34 @@ void add_depth_map(const Dataset& dataset, double t_s, DepthSamples& samples) {
       samples.add(Eigen::Vector2d(x, y), static_cast<double>(depth(x, y)));
 }
 
-/// The distance of the picture from the camera [m].
-double scene_distance_m(const Dataset& dataset, std::span<const Eigen::Vector3f> map_in_world,
-                        const Rigid3& world_from_camera, const PinholeCamera& camera, double t_s) {
-  DepthSamples samples(camera);
-  add_map(map_in_world, world_from_camera, camera, samples);
-  if (!samples.near_m()) add_depth_map(dataset, t_s, samples);
-  const std::optional<double> distance =
-      samples.near_m() ? samples.near_m() : dataset.facts().mean_depth_m;
-  if (!distance)
+Similarity truth_from_run(const RunFolder* run, const Dataset& dataset) {
+  if (run == nullptr || !run->trajectory || dataset.groundtruth().empty()) return {};
+  return truth_from_estimate(score_input(*run, dataset));
+}
+
+/// The distance of the picture from the camera, in the units of the map; `scale`: metres of one.
+double scene_distance(const Dataset& dataset, std::span<const Eigen::Vector3f> map_in_world,
+                      const Rigid3& world_from_camera, double scale, double t_s) {
+  const PinholeCamera camera = dataset.camera().undistorted();
+  DepthSamples of_map(camera), of_depth(camera);
+  add_map(map_in_world, world_from_camera, camera, of_map);
+  if (const std::optional<double> distance = of_map.near_m()) return kDistanceRatio * *distance;
+  add_depth_map(dataset, t_s, of_depth);
+  const std::optional<double> distance_m =
+      of_depth.near_m() ? of_depth.near_m() : dataset.facts().mean_depth_m;
+  if (!distance_m)
     throw InputError(
         "--overlay",
         fmt::format("neither a map nor a depth map gives the distance of the scene at "
                     "{} s; state the pose of the picture: --overlay-pose \"x y z qx qy qz "
                     "qw\"",
                     t_s));
-  return kDistanceRatio * *distance;
+  return kDistanceRatio * *distance_m / scale;
 }
 
 PlanarPicture place_picture(const OverlayOptions& options, const Dataset& dataset,
                             const RunFolder* run, std::span<const Eigen::Vector3f> map_in_world,
-                            double start_s) {
+                            double scale, double start_s) {
   const double at_s = options.at_s.value_or(start_s);
   const PinholeCamera camera = dataset.camera().undistorted();
   const Trajectory& poses = poses_of(dataset, run);
@@ -115,18 +123,18 @@ PlanarPicture place_picture(const OverlayOptions& options, const Dataset& datase
                                                    at_s, poses.start_s(), poses.end_s()));
   const Rigid3 world_from_camera = held_pose(poses, at_s);
   PlanarPicture placed{PicturePyramid(read_image_rgba(options.picture)), {}, 1};
-  double distance_m = 0;
+  double distance = 0;
   if (options.world_from_picture) {
     placed.world_from_picture = *options.world_from_picture;
-    distance_m = (placed.world_from_picture.translation() - world_from_camera.translation()).norm();
+    distance = (placed.world_from_picture.translation() - world_from_camera.translation()).norm();
   } else {
-    distance_m = scene_distance_m(dataset, map_in_world, world_from_camera, camera, at_s);
+    distance = scene_distance(dataset, map_in_world, world_from_camera, scale, at_s);
     // On the optical axis, which need not pass through the centre of the image.
     placed.world_from_picture =
-        world_from_camera * Rigid3(Eigen::Quaterniond::Identity(), {0, 0, distance_m});
+        world_from_camera * Rigid3(Eigen::Quaterniond::Identity(), {0, 0, distance});
   }
   placed.width_m =
-      options.width_m.value_or(kDefaultViewFraction * camera.width * distance_m / camera.fx);
+      options.width_m.value_or(kDefaultViewFraction * camera.width * distance / camera.fx);
   if (!(placed.width_m > 0))
     throw InputError("--overlay-width",
                      "is needed where the picture is at the position of the camera");
@@ -141,13 +149,20 @@ Overlay::Overlay(const OverlayOptions& options, const Dataset& dataset, const Ru
       run_(run),
       options_(options),
       camera_(dataset.camera().undistorted()),
-      picture_(place_picture(options, dataset, run, map_in_world, start_s)) {
+      truth_from_run_(truth_from_run(run, dataset)),
+      truth_in_run_(truth_from_run_.inverse() * dataset.groundtruth()),
+      picture_(place_picture(options, dataset, run, map_in_world, truth_from_run_.scale, start_s)) {
   if (!options.truth) return;
   if (run == nullptr)
     throw InputError("--overlay-truth",
                      "applies to runs; over a dataset the picture is drawn from the true pose");
   if (dataset.groundtruth().empty())
     throw InputError("--overlay-truth", dataset.folder().string() + " has no ground truth");
+  if (run->freedom() != Alignment::kNone && associate(score_input(*run, dataset)).empty())
+    throw InputError("--overlay-truth",
+                     run->folder.string() +
+                         " has a world of its own and no pose at a time of the ground truth, by "
+                         "which that could be brought there");
 }
 
 bool Overlay::is_lost(double t_s) const {
@@ -168,8 +183,9 @@ OcclusionTest Overlay::occlusion_at(double t_s) const {
   std::vector<PosedDepthMap> maps =
       depth_maps_near(dataset_, truth.empty() ? poses_of(dataset_, run_) : truth, t_s);
   if (maps.empty()) return {};
-  return
-      [maps = std::move(maps)](const Eigen::Vector3d& point) { return is_occluded(maps, point); };
+  return [maps = std::move(maps), scale = truth_from_run_.scale](const Eigen::Vector3d& point) {
+    return is_occluded(maps, scale * point);
+  };
 }
 
 CaptionedPicture Overlay::over(CaptionedPicture drawn, double t_s, int upscale,
@@ -185,7 +201,7 @@ CaptionedPicture Overlay::over(CaptionedPicture drawn, double t_s, int upscale,
     drawn.caption += " LOST";
   }
   if (options_.truth) {
-    const ScreenView true_view{camera_, dataset_.groundtruth().at_clamped(t_s), upscale};
+    const ScreenView true_view{camera_, truth_in_run_.at_clamped(t_s), upscale};
     // A line in the contrasting colour is visible on any background.
     drawn.image = with_outline(std::move(drawn.image), picture_, true_view, theme.background, 3);
     drawn.image = with_outline(std::move(drawn.image), picture_, true_view, theme.text, 1);

@@ -7,6 +7,7 @@
 #include "core/io/dataset/dataset.h"
 #include "core/rigid3.h"
 #include "core/trajectory.h"
+#include "eval/metrics/trajectory/align.h"
 #include "eval/picture/canvas/colour.h"
 #include "eval/picture/canvas/contact_sheet.h"
 #include "eval/picture/overlay/planar_picture.h"
@@ -14,7 +15,8 @@
 
 namespace saccade {
 
-/// A picture at a fixed pose in the world, drawn over events and frames (thesis fig. 8.8).
+/// A picture at a fixed pose in the world, drawn over events and frames (thesis fig. 8.8). The world of
+/// a run that was given no pose is its own, and lengths are in its units.
 struct OverlayOptions {
   std::filesystem::path picture;  ///< PNG, JPEG ...; with its alpha channel
   /// nullopt: in front of the camera at `at_s`, facing it, 3 % nearer than the 2nd percentile of
@@ -33,7 +35,9 @@ class Overlay {
   /// `run` may be null; both must outlive this. `map_in_world`: the distance of the scene comes
   /// from these points or, without any, from the depth maps. Throws InputError where there are no
   /// poses, no depth to choose the pose of the picture by, no truth for `options.truth`, or no
-  /// picture file.
+  /// picture file. The truth is brought into the world of a run that has its own by the alignment that
+  /// its scores take out (with the dataset's mean depth); InputError for `options.truth` where the
+  /// run has no pose within the truth to align by.
   Overlay(const OverlayOptions& options, const Dataset& dataset, const RunFolder* run,
           std::span<const Eigen::Vector3f> map_in_world, double start_s);
 
@@ -52,7 +56,9 @@ class Overlay {
   const Dataset& dataset_;
   const RunFolder* run_;
   OverlayOptions options_;
-  PinholeCamera camera_;  ///< undistorted
+  PinholeCamera camera_;       ///< undistorted
+  Similarity truth_from_run_;  ///< of a run in a world of its own
+  Trajectory truth_in_run_;    ///< the true poses in the world of the picture
   PlanarPicture picture_;
 };
 

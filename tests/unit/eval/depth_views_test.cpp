@@ -3,13 +3,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
+#include <vector>
 
 #include "core/io/images/exr_file.h"
 #include "core/io/ply_file.h"
 #include "core/io/run/view_list.h"
 #include "core/io/trajectory_file.h"
+#include "core/rigid3.h"
 #include "eval/evaluate.h"
+#include "eval/metrics/trajectory/trajectory_metrics.h"
 #include "eval/report/report.h"
 #include "tests/support/error_of.h"
 #include "tests/support/planar_world.h"
@@ -98,6 +102,33 @@ TEST_F(DepthViews, AWorldOfItsOwnScaleIsAsLargeAsTheTruth) {
   EXPECT_NEAR(view.points[0].depth_m, 4 * found_m, 1e-6);
   EXPECT_NEAR(*view.points[0].sigma_m, 0.4, 1e-6);
   EXPECT_NEAR(*evaluate_run(fake()).get("depth.strict.rel_median"), 4 * kScale - 1, 0.01);
+}
+
+TEST_F(DepthViews, TheScaleOfAWorldOfItsOwnIsThatOfItsScores) {
+  // Positions and orientations tell different scales; their weights depend on the depth of the scene.
+  const Dataset data = Dataset::open(dataset());
+  std::vector<StampedPose> poses;
+  for (const StampedPose& pose : data.groundtruth().poses())
+    poses.push_back(
+        {pose.t_s, Rigid3(so3_exp({0, 0, 0.5 + 0.5 * pose.t_s}) * pose.world_from_camera.rotation(),
+                          pose.world_from_camera.translation())});
+  write_tum_trajectory(fake() / "trajectory.txt", poses);
+  const double found_m = load_depth_views(fake())[0].points[0].depth_m;
+  folder_.write("fake/start.yaml", "");
+  const RunFolder run = RunFolder::open(fake());
+  std::vector<double> scales;
+  for (const double mean_depth_m : {0.001, 1000.0}) {
+    TrajectoryScoreInput input = score_input(run, data);
+    input.mean_depth_m = mean_depth_m;
+    scales.push_back(truth_from_estimate(input).scale);
+    EXPECT_NEAR(load_depth_views(run, data, mean_depth_m)[0].points[0].depth_m,
+                scales.back() * found_m, 1e-9);
+    EvaluateOptions options;
+    options.mean_depth_m = mean_depth_m;
+    EXPECT_NEAR(*evaluate_run(fake(), options).get("depth.strict.rel_median"),
+                std::abs(scales.back() * kScale - 1), 0.01);
+  }
+  EXPECT_GT(std::abs(scales[1] / scales[0] - 1), 0.05) << "the test needs two scales";
 }
 
 TEST_F(DepthViews, TheCloudOfARunHasTheExactPositions) {

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include <Eigen/LU>
@@ -107,6 +109,49 @@ TEST(EdgeFit, AnEdgeBehindTheViewIsNone) {
     event.view_from_camera = {Eigen::Quaterniond::Identity(),
                               -event.view_from_camera.translation()};
   EXPECT_FALSE(fit_edge(events, davis_camera(), kPrior.mean, kPrior, 0.01));
+}
+
+/// An upright edge of an inverse depth that is read from one view.
+Edgel upright_edge() {
+  Edgel edge;
+  edge.pixel = {120, 80};
+  edge.normal = {1, 0};
+  edge.inverse_depth = static_cast<float>(kInverse);
+  return edge;
+}
+
+/// A landmark as seen from the view itself.
+ProjectedLandmarks landmark_at(const Eigen::Vector2d& pixel, double inverse_depth, double sigma) {
+  const PinholeCamera camera = davis_camera();
+  const Landmark landmark{camera.ray(pixel) / inverse_depth, sigma};
+  return {std::span(&landmark, 1), Rigid3(), camera};
+}
+
+TEST(EdgePrior, WithoutALandmarkIsThatOfAnyEdge) {
+  const EdgeUnknowns unknowns(kInverse, 0.05, 0.1, 0.2);
+  for (const ProjectedLandmarks& landmarks :
+       {ProjectedLandmarks({}, Rigid3(), davis_camera()), landmark_at({123, 80}, kInverse, 0.01),
+        landmark_at({120, 80}, 1.3 * kInverse, 0.01)}) {
+    const EdgePrior prior = edge_prior(upright_edge(), unknowns, landmarks);
+    EXPECT_EQ(prior.mean, unknowns);
+    EXPECT_EQ(prior.sigma, EdgeNoise::prior_sigma(kInverse));
+  }
+}
+
+TEST(EdgePrior, TakesDepthAndPlaceFromTheLandmarkThatTheEdgeLiesOn) {
+  const EdgeUnknowns unknowns(kInverse, 0.05, 0.1, 0.2);
+  const EdgePrior prior =
+      edge_prior(upright_edge(), unknowns, landmark_at({120.4, 81}, 1.02 * kInverse, 0.004));
+  EXPECT_NEAR(prior.mean[0], 1.02 * kInverse, 1e-9);
+  EXPECT_NEAR(prior.sigma[0], std::hypot(0.004, 0.003) * 1.02 * kInverse, 1e-9);
+  // Only across the edge: along it a landmark may be anywhere.
+  EXPECT_NEAR(prior.mean[1], 0.4, 1e-6);
+  EXPECT_NEAR(prior.sigma[1], 0.1, 1e-9);
+  const EdgeUnknowns usual = EdgeNoise::prior_sigma(kInverse);
+  for (int i = 2; i < 4; ++i) {
+    EXPECT_EQ(prior.mean[i], unknowns[i]);
+    EXPECT_EQ(prior.sigma[i], usual[i]);
+  }
 }
 
 }  // namespace

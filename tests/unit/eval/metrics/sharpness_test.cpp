@@ -2,10 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <filesystem>
+#include <vector>
 
+#include "core/event.h"
 #include "core/io/dataset/dataset.h"
 #include "core/io/dataset/dataset_writer.h"
+#include "core/trajectory.h"
 #include "tests/support/command.h"
 
 namespace saccade {

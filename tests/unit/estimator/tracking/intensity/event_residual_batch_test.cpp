@@ -178,14 +178,14 @@ TEST(EventResidualBatch, WeightsAreCauchysOverTheVariancesOfMapAndPixel) {
       }
 }
 
-TEST(EventResidualBatch, TrustScalesTheEquationsAndNotTheEvidence) {
+TEST(EventResidualBatch, TheWeightOfARegionScalesTheEquationsAndNotTheEvidence) {
   const ImageF atlas = some_atlas();
   Sight here = sight({20, 30}, 2, -0.4F);
-  EventResidualBatch trusted, doubted;
-  trusted.add(here.observation, here.seen);
-  here.observation.trust = 0.25F;
+  EventResidualBatch usual, doubted;
+  usual.add(here.observation, here.seen);
+  here.observation.region_weight = 0.25F;
   doubted.add(here.observation, here.seen);
-  const EventResidualBatch::Sums whole = sums_of(trusted, kEventSigma, atlas);
+  const EventResidualBatch::Sums whole = sums_of(usual, kEventSigma, atlas);
   const EventResidualBatch::Sums part = sums_of(doubted, kEventSigma, atlas);
   EXPECT_TRUE(part.rhs.isApprox(0.25 * whole.rhs, 1e-5));
   EXPECT_TRUE(part.normal.isApprox(0.25 * whole.normal, 1e-5));
@@ -194,18 +194,18 @@ TEST(EventResidualBatch, TrustScalesTheEquationsAndNotTheEvidence) {
   EXPECT_EQ(part.squares, whole.squares);
 }
 
-TEST(EventResidualBatch, WithinItsSlackAnObservationSaysNothing) {
+TEST(EventResidualBatch, WithinItsDeadZoneAnObservationAgreesAndSaysNothingOfThePose) {
   const ImageF atlas = some_atlas();
   Sight here = sight({20, 30}, 2, -0.4F);
   const double far = residual_of(here, some_pose(), Vector6::Zero(), atlas);
   ASSERT_GT(std::abs(far), 0.2) << "the test needs a residual";
-  here.observation.slack = 0.15F;
+  here.observation.dead_zone = 0.15F;
   EXPECT_NEAR(residual_of(here, some_pose(), Vector6::Zero(), atlas),
               far - std::copysign(0.15, far), 1e-6);
   EventResidualBatch beyond, within;
   beyond.add(here.observation, here.seen);
   EXPECT_GT(sums_of(beyond, kEventSigma, atlas).normal.norm(), 0);
-  here.observation.slack = 2;
+  here.observation.dead_zone = 2;
   within.add(here.observation, here.seen);
   const EventResidualBatch::Sums sums = sums_of(within, kEventSigma, atlas);
   EXPECT_EQ(sums.normal.norm(), 0);

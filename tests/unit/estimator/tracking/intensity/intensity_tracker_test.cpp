@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "tests/unit/estimator/tracking/corner_recording.h"
 
@@ -270,8 +273,8 @@ TEST(IntensityTracker, PixelsBetweenTheirEventsHoldThePose) {
   EXPECT_LT(with_pixels, error_with(1, false)) << "half a threshold nearer to the truth";
 }
 
-/// A part of the image before which something moves: it shows the events of another part.
-class Stranger {
+/// A part of the image in which something moves: it shows the events of another part.
+class MovingObject {
  public:
   [[nodiscard]] static bool covers(const Event& event) {
     return event.x >= kLeft && event.x < kLeft + kSide && event.y >= kTop && event.y < kTop + kSide;
@@ -306,23 +309,23 @@ Events by_blind_pixels(const Events& events) {
   return seen;
 }
 
-TEST(IntensityTracker, WhatMovesBeforeTheMapPullsLittle) {
+TEST(IntensityTracker, WhatMovesInFrontOfTheMapPullsLittle) {
   IntensityTracking tracking;
   const Errors errors =
-      resolved_errors(from(0, tracking->track({by_blind_pixels(Stranger::recorded(true))})));
-  EXPECT_LT(errors.mean, 0.2) << "all parts trusted alike: 0.24";
+      resolved_errors(from(0, tracking->track({by_blind_pixels(MovingObject::recorded(true))})));
+  EXPECT_LT(errors.mean, 0.2) << "all parts weigh alike: 0.24";
   EXPECT_LT(errors.largest, 0.45) << "0.76";
 }
 
-TEST(IntensityTracker, PixelsThatNeverFiredHoldThePoseBesideSomethingThatMoves) {
+TEST(IntensityTracker, TheMapAroundSomethingThatMovesHoldsThePose) {
   IntensityTracking tracking;
   const std::vector<TrackedPose> poses =
-      tracking->track({by_blind_pixels(Stranger::recorded(false))});
+      tracking->track({by_blind_pixels(MovingObject::recorded(false))});
   ASSERT_GT(poses.size(), 5U);
   double largest = 0;
   for (const TrackedPose& pose : poses)
     largest = std::max(largest, (corner_motion(0).inverse() * pose.world_from_camera).log().norm());
-  EXPECT_LT(largest, 0.017) << "all parts trusted alike: 0.021";
+  EXPECT_LT(largest, 0.017) << "all parts weigh alike: 0.021";
 }
 
 TEST(IntensityTracker, WithoutTheMapInViewItIsLost) {

@@ -45,6 +45,15 @@ TEST(Align, RecoversASimilarityExactly) {
   expect_same(align(transformed(kSpread, kTurned), Alignment::kSe3), kTurned);
 }
 
+TEST(Align, TheInverseLeadsBack) {
+  const Similarity there{2.5, {so3_exp({0.3, -1, 2}), {5, -7, 1}}};
+  const Eigen::Vector3d point(1, -2, 3);
+  EXPECT_LT((there.inverse() * (there * point) - point).norm(), 1e-12);
+  const Rigid3 pose(so3_exp({-1, 0.2, 0.1}), point);
+  const Rigid3 back = there.inverse() * (there * pose);
+  EXPECT_LT((pose.inverse() * back).log().norm(), 1e-12);
+}
+
 TEST(Align, AMetricTellsTheAlignmentByItsFreedoms) {
   for (const Alignment alignment :
        {Alignment::kNone, Alignment::kYaw, Alignment::kSe3, Alignment::kSim3})

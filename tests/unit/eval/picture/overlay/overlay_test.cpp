@@ -3,7 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include "core/io/files/atomic_file.h"
 #include "core/io/images/image_file.h"
+#include "core/rigid3.h"
+#include "eval/metrics/trajectory/align.h"
 #include "eval/picture/render.h"
 #include "tests/support/error_of.h"
 #include "tests/unit/eval/fake_folders.h"
@@ -122,6 +130,48 @@ TEST_F(OverlayTest, TheTruthIsAnOutline) {
   EXPECT_GT(changed, 40);
   EXPECT_EQ(with.image(40, 30), without(40, 30));
   EXPECT_THAT(with.caption, HasSubstr("outline: true pose"));
+}
+
+TEST_F(OverlayTest, TheTruthIsBroughtIntoTheWorldOfARunThatHasItsOwn) {
+  options.truth = true;
+  // A run that knows the truth, in its own world, three times as small and turned away.
+  tracked.trajectory = data.groundtruth();
+  const ImageRgb8 expected = drawn(over_run(), 0).image;
+  const Similarity own_from_truth{1.0 / 3, {so3_exp({0.3, -1, 2}), {5, -7, 1}}};
+  tracked.trajectory = own_from_truth * data.groundtruth();
+  map = own_from_truth * map;
+  write_atomically(run() / "start.yaml", "given: false\n");
+  const ImageRgb8 image = drawn(over_run(), 0).image;
+  int differ = 0;
+  for (std::size_t i = 0; i < image.size(); ++i)
+    if (image.pixels()[i] != expected.pixels()[i]) ++differ;
+  EXPECT_LT(differ, 10);
+  // Without a map the depth maps tell where the scene is, in metres.
+  map.clear();
+  EXPECT_EQ(count_of(drawn(over_run(), 0).image, kYellow), count_of(expected, kYellow));
+}
+
+TEST_F(OverlayTest, OfARunInAWorldOfItsOwnTheSceneHidesWhatIsBehindIt) {
+  const Similarity own_from_truth{1.0 / 3, {so3_exp({0.3, -1, 2}), {5, -7, 1}}};
+  tracked.trajectory = own_from_truth * data.groundtruth();
+  write_atomically(run() / "start.yaml", "given: false\n");
+  // A picture some metres behind the scene, which in units of the run is nearer than the scene's metres.
+  const Rigid3 behind(Eigen::Quaterniond::Identity(), {0, 0, 6});
+  options.world_from_picture = own_from_truth * (data.groundtruth().at_clamped(0) * behind);
+  EXPECT_EQ(count_of(drawn(over_run(), 0).image, kYellow), 0);
+  options.on_top = true;
+  EXPECT_GT(count_of(drawn(over_run(), 0).image, kYellow), 100);
+}
+
+TEST_F(OverlayTest, WithoutACommonTimeThereIsNoTruthInAWorldOfItsOwn) {
+  options.truth = true;
+  std::vector<StampedPose> later;
+  for (const StampedPose& pose : data.groundtruth().poses())
+    later.push_back({pose.t_s + 100, pose.world_from_camera});
+  tracked.trajectory = Trajectory(std::move(later));
+  write_atomically(run() / "start.yaml", "given: false\n");
+  EXPECT_THAT(error_of([&] { return over_run(); }),
+              HasSubstr("no pose at a time of the ground truth"));
 }
 
 TEST_F(OverlayTest, SaysWhatIsMissing) {
