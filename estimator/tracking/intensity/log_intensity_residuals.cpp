@@ -82,7 +82,6 @@ void LogIntensityResiduals::begin_learning() {
 void LogIntensityResiduals::end_learning() {
   set_contrast(thresholds_->contrast());
   thresholds_.reset();
-  regions_.reset();  // what the poses of the edge tracker left over
 }
 
 void LogIntensityResiduals::set_contrast(const EventContrast& contrast) {

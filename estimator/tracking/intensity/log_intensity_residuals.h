@@ -138,7 +138,8 @@ class LogIntensityResiduals {
   EventContrast contrast_;
   std::optional<ThresholdEstimator> thresholds_;  ///< while they are learned
   PixelLogIntensity pixels_;
-  RegionWeights regions_;  ///< also after a loss: what moves is still there
+  RegionWeights
+      regions_;  ///< kept after a loss and from the learning on: what moves is still there
   float no_event_variance_;
   float threshold_;  ///< mean of ON and OFF
   EventIntervals intervals_;
