@@ -39,8 +39,8 @@ struct WindowImages {
 [[nodiscard]] double sharpness(const ImageF& image);
 
 /// Means over the windows: sharpness.{raw,stabilized,truth}, and sharpness.fwl, stabilized / raw of each
-/// window in which raw is not 0 (the flow warp loss of Stoffregen et al., ECCV 2020). And stabilization.within_1px, the
-/// fraction of the events within a pixel of their true position.
+/// window in which raw is not 0 (the flow warp loss of Stoffregen et al., ECCV 2020). And
+/// stabilization.within_1px, the fraction of the events within a pixel of their true position.
 [[nodiscard]] Metrics score_stabilization(const StabilizedRun& run, const Dataset& dataset);
 
 }  // namespace saccade

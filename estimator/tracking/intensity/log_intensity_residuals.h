@@ -55,9 +55,9 @@ class LogIntensityResiduals {
   [[nodiscard]] EventResidualBatch::Sums evaluate(const EventResidualBatch::Motion& motion);
 
   /// Corrects the pixels of the loaded events towards the map at the pose of the last evaluate(),
-  /// each by what it is less certain than the map, and learns how much each region counts.
-  /// After an event a pixel misses what happens while
-  /// it is blind and the image moves at `image_speed_px` per second.
+  /// each by what it is less certain than the map, and learns how much each region counts. After an
+  /// event a pixel misses what happens while it is blind and the image moves at `image_speed_px` per
+  /// second.
   void correct(double image_speed_px);
 
   /// Pixels of which little is known are read from the map at a pose: between its events a pixel is
@@ -138,8 +138,8 @@ class LogIntensityResiduals {
   EventContrast contrast_;
   std::optional<ThresholdEstimator> thresholds_;  ///< while they are learned
   PixelLogIntensity pixels_;
-  RegionWeights
-      regions_;  ///< kept after a loss and from the learning on: what moves is still there
+  /// Kept after a loss, and from the learning of thresholds on: what moves is still there.
+  RegionWeights regions_;
   float no_event_variance_;
   float threshold_;  ///< mean of ON and OFF
   EventIntervals intervals_;
