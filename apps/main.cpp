@@ -10,6 +10,7 @@
 #include "apps/usage_error.h"
 #include "apps/verbs.h"
 #include "core/error.h"
+#include "core/process/fork_server.h"
 #include "core/process/interruption.h"
 #include "core/refused_path.h"
 #include "core/version.h"
@@ -82,6 +83,9 @@ int run_command(int argc, char** argv) {
 }  // namespace saccade
 
 int main(int argc, char** argv) {
-  saccade::end_on_interruption();
-  return saccade::run_command(argc, argv);
+  const auto run = [](int count, char** words) {
+    saccade::end_on_interruption();
+    return saccade::run_command(count, words);
+  };
+  return saccade::is_fork_server(argc, argv) ? saccade::serve_forks(run) : run(argc, argv);
 }

@@ -114,7 +114,7 @@ void sweep(SweepVerbOptions options) {
     options.slurm.container = std::filesystem::canonical(options.slurm.container);
   SweepConfig config = load(options);
   const std::unique_ptr<Launcher> launcher =
-      make_launcher(options.launcher, {{}, options.output, options.slurm});
+      make_launcher(options.launcher, {{}, options.output, options.slurm, true});
   if (options.print_config) {
     fmt::print("{}", config::print_documented(config));
     return;

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <spawn.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
@@ -59,23 +60,8 @@ class SpawnSetup {
   posix_spawnattr_t attributes{};
 };
 
-void append(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream stream(file, std::ios::app | std::ios::binary);
-  stream << text << std::flush;
-  if (!stream) fail_to_write(file, errno);
-}
-
 double seconds(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-}
-
-ChildEnd end_of(int status, const rusage& usage) {
-  ChildEnd end;
-  if (WIFEXITED(status)) end.exit_code = WEXITSTATUS(status);
-  if (WIFSIGNALED(status)) end.signal = WTERMSIG(status);
-  end.cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime);
-  end.peak_memory_mb = static_cast<double>(usage.ru_maxrss) / 1024;
-  return end;
 }
 
 /// The high-water mark of a process and of all below it; 0 where there is none (any more).
@@ -106,10 +92,25 @@ std::string ChildEnd::text() const {
   return fmt::format("killed by signal {} ({})", signal, sigdescr_np(signal));
 }
 
+ChildEnd ChildEnd::of(int status, const rusage& usage) {
+  ChildEnd end;
+  if (WIFEXITED(status)) end.exit_code = WEXITSTATUS(status);
+  if (WIFSIGNALED(status)) end.signal = WTERMSIG(status);
+  end.cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  end.peak_memory_mb = static_cast<double>(usage.ru_maxrss) / 1024;
+  return end;
+}
+
+void begin_log(const std::filesystem::path& log, const std::vector<std::string>& words) {
+  std::ofstream stream(log, std::ios::app | std::ios::binary);
+  stream << "$ " << shell_line(words) << "\n" << std::flush;
+  if (!stream) fail_to_write(log, errno);
+}
+
 ChildProcess::ChildProcess(const std::filesystem::path& program,
                            const std::vector<std::string>& words, const std::filesystem::path& log,
                            const std::filesystem::path& working_folder) {
-  append(log, "$ " + shell_line(words) + "\n");
+  begin_log(log, words);
   const SpawnSetup setup(log, working_folder);
   const int error = posix_spawnp(&pid_, program.c_str(), &setup.files, &setup.attributes,
                                  pointers_to(words).data(), environ);
@@ -129,22 +130,43 @@ ChildProcess::ChildProcess(const std::filesystem::path& program,
 ChildProcess::~ChildProcess() { kill_and_close(); }
 
 ChildProcess::ChildProcess(ChildProcess&& other) noexcept
-    : pid_(std::exchange(other.pid_, -1)), descriptor_(std::exchange(other.descriptor_, -1)) {}
+    : pid_(std::exchange(other.pid_, -1)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      is_told_(other.is_told_) {}
 
 ChildProcess& ChildProcess::operator=(ChildProcess&& other) noexcept {
   if (this == &other) return *this;
   kill_and_close();
   pid_ = std::exchange(other.pid_, -1);
   descriptor_ = std::exchange(other.descriptor_, -1);
+  is_told_ = other.is_told_;
   return *this;
 }
 
 std::optional<ChildEnd> ChildProcess::poll_end() {
+  if (is_told_) return poll_told_end();
   int status = 0;
   rusage usage{};
   if (pid_ < 0 || wait4(pid_, &status, WNOHANG, &usage) != pid_) return std::nullopt;
   pid_ = -1;
-  return end_of(status, usage);
+  return ChildEnd::of(status, usage);
+}
+
+std::optional<ChildEnd> ChildProcess::poll_told_end() {
+  if (pid_ < 0) return std::nullopt;
+  pollfd told{descriptor_, POLLIN, 0};
+  if (::poll(&told, 1, 0) <= 0) return std::nullopt;
+  ChildEnd end;
+  const ssize_t count = ::read(descriptor_, &end, sizeof(end));
+  if (count < 0 && errno == EINTR) return std::nullopt;
+  if (count != sizeof(end)) {
+    // Its parent was killed, and it might go on for ever.
+    ::kill(-pid_, SIGKILL);
+    end = {};
+    end.signal = SIGKILL;
+  }
+  pid_ = -1;
+  return end;
 }
 
 double ChildProcess::memory_mb() const { return pid_ > 0 ? largest_memory_mb(pid_) : 0; }
@@ -154,9 +176,10 @@ void ChildProcess::stop() const {
 }
 
 void ChildProcess::kill_and_close() {
-  if (pid_ > 0) {
+  // One whose end was told, but not heard, is gone, and its number may be another's by now.
+  if (pid_ > 0 && !(is_told_ && poll_told_end())) {
     ::kill(-pid_, SIGKILL);
-    waitpid(pid_, nullptr, 0);
+    if (!is_told_) waitpid(pid_, nullptr, 0);
     pid_ = -1;
   }
   if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));

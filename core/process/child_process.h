@@ -1,5 +1,6 @@
 #pragma once
 
+#include <sys/resource.h>
 #include <sys/types.h>
 
 #include <filesystem>
@@ -21,7 +22,13 @@ struct ChildEnd {
 
   /// "exit code 2" or "killed by signal 9 (Killed)".
   [[nodiscard]] std::string text() const;
+  /// As wait4() tells it.
+  [[nodiscard]] static ChildEnd of(int status, const rusage& usage);
 };
+
+/// Appends the words to a log as a line that a shell runs again. Throws InputError when it cannot be
+/// written.
+void begin_log(const std::filesystem::path& log, const std::vector<std::string>& words);
 
 /// A program that runs beside this one, in a process group of its own, so that Ctrl-C in the
 /// terminal reaches it through stop() alone. It reads nothing.
@@ -32,6 +39,9 @@ class ChildProcess {
   /// this program's. Throws InputError when it cannot be started or the log not be written.
   ChildProcess(const std::filesystem::path& program, const std::vector<std::string>& words,
                const std::filesystem::path& log, const std::filesystem::path& working_folder = {});
+  /// A process of another parent, which writes how it ended, a ChildEnd, to the other end of the
+  /// pipe `told_end`; that the pipe ends without it counts as being killed.
+  ChildProcess(pid_t pid, int told_end) : pid_(pid), descriptor_(told_end), is_told_(true) {}
   ~ChildProcess();  ///< kills what is still running
   ChildProcess(ChildProcess&& other) noexcept;
   ChildProcess& operator=(ChildProcess&& other) noexcept;
@@ -47,10 +57,12 @@ class ChildProcess {
   void stop() const;
 
  private:
+  [[nodiscard]] std::optional<ChildEnd> poll_told_end();
   void kill_and_close();
 
   pid_t pid_ = -1;  ///< -1: ended
   int descriptor_ = -1;
+  bool is_told_ = false;  ///< its end is read from the descriptor
 };
 
 /// While it lives, SIGINT, SIGTERM and SIGHUP do not end this program but are remembered.

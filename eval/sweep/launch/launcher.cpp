@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/io/files/atomic_file.h"
 #include "core/process/child_process.h"
+#include "core/process/fork_server.h"
 #include "core/process/program.h"
 #include "core/stopwatch.h"
 #include "eval/sweep/launch/slurm_launcher.h"
@@ -30,13 +31,23 @@ struct Running {
   ChildProcess process;
 };
 
-/// Starts a command of a job.
-ChildProcess start_command(const std::filesystem::path& program, const LaunchJob& job,
-                           std::size_t command) {
-  std::vector<std::string> words{"saccade"};
-  words.insert(words.end(), job.commands[command].begin(), job.commands[command].end());
-  return ChildProcess(program, words, job.log);
-}
+/// Starts commands of jobs.
+class Starter {
+ public:
+  Starter(std::filesystem::path program, bool is_fork_server) : program_(std::move(program)) {
+    if (is_fork_server) server_.emplace(program_);
+  }
+
+  ChildProcess start(const LaunchJob& job, std::size_t command) {
+    std::vector<std::string> words{"saccade"};
+    words.insert(words.end(), job.commands[command].begin(), job.commands[command].end());
+    return server_ ? server_->start(words, job.log) : ChildProcess(program_, words, job.log);
+  }
+
+ private:
+  std::filesystem::path program_;
+  std::optional<ForkServer> server_;
+};
 
 /// Sleeps until a child ends, a signal arrives or kWaitMs have passed.
 void wait_for_any(const std::vector<Running>& running) {
@@ -60,18 +71,19 @@ void stop_all(std::vector<Running>& running) {
 /// Starts the next command of a job after one has ended. Returns the result where the job has
 /// ended.
 std::optional<LaunchResult> advance(Running& one, const ChildEnd& end, const LaunchJob& job,
-                                    const std::filesystem::path& program) {
+                                    Starter& starter) {
   const double wall_s = one.stopwatch.seconds();
   if (end.exit_code != 0) return LaunchResult{false, end.text(), job.commands[one.command], wall_s};
   if (++one.command == job.commands.size()) return LaunchResult{true, {}, {}, wall_s};
-  one.process = start_command(program, job, one.command);
+  one.process = starter.start(job, one.command);
   return std::nullopt;
 }
 
 /// Child processes of this program on this machine.
 class LocalLauncher : public Launcher {
  public:
-  explicit LocalLauncher(std::filesystem::path program) : program_(std::move(program)) {}
+  LocalLauncher(std::filesystem::path program, bool is_fork_server)
+      : program_(std::move(program)), is_fork_server_(is_fork_server) {}
 
   [[nodiscard]] bool run(std::span<const LaunchJob> jobs, const LaunchLimits& limits,
                          const LaunchCallbacks& callbacks) override;
@@ -80,6 +92,7 @@ class LocalLauncher : public Launcher {
 
  private:
   std::filesystem::path program_;
+  bool is_fork_server_;
 };
 
 int LocalLauncher::default_parallel_jobs(int threads) const {
@@ -92,13 +105,14 @@ bool LocalLauncher::run(std::span<const LaunchJob> jobs, const LaunchLimits& lim
                         const LaunchCallbacks& callbacks) {
   SACCADE_CHECK(limits.parallel_jobs >= 1);
   const InterruptGuard interrupt;
+  Starter starter(program_, is_fork_server_);
   std::vector<Running> running;
   std::size_t next = 0;
   while (next < jobs.size() || !running.empty()) {
     for (; next < jobs.size() && running.size() < static_cast<std::size_t>(limits.parallel_jobs);
          ++next) {
       write_atomically(jobs[next].log, "");
-      running.push_back({next, 0, {}, start_command(program_, jobs[next], 0)});
+      running.push_back({next, 0, {}, starter.start(jobs[next], 0)});
     }
     wait_for_any(running);
     callbacks.on_wait();
@@ -109,7 +123,7 @@ bool LocalLauncher::run(std::span<const LaunchJob> jobs, const LaunchLimits& lim
     for (auto one = running.begin(); one != running.end();) {
       std::optional<LaunchResult> result;
       if (const std::optional<ChildEnd> end = one->process.poll_end())
-        result = advance(*one, *end, jobs[one->index], program_);
+        result = advance(*one, *end, jobs[one->index], starter);
       if (result) callbacks.on_end(one->index, *result);
       one = result ? running.erase(one) : one + 1;
     }
@@ -122,7 +136,8 @@ bool LocalLauncher::run(std::span<const LaunchJob> jobs, const LaunchLimits& lim
 std::unique_ptr<Launcher> make_launcher(const std::string& name, LauncherOptions options) {
   const std::vector<std::string> names{"local", "slurm"};
   if (options.program.empty()) options.program = program_file();
-  if (name == names[0]) return std::make_unique<LocalLauncher>(options.program);
+  if (name == names[0])
+    return std::make_unique<LocalLauncher>(options.program, options.is_fork_server);
   if (name == names[1])
     return std::make_unique<SlurmLauncher>(options, std::make_unique<SlurmCommands>());
   throw InputError("--launcher", "there is no launcher '" + name + "'; " +

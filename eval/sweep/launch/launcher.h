@@ -79,6 +79,7 @@ struct LauncherOptions {
   std::filesystem::path program;  ///< empty: the running one
   std::filesystem::path folder;   ///< of the sweep; `slurm` keeps its records there
   SlurmOptions slurm;
+  bool is_fork_server = false;  ///< `program` can be one (core/process/fork_server.h)
 };
 
 /// "local": child processes on this machine; "slurm": job arrays on a cluster. Throws InputError

@@ -31,7 +31,7 @@ class Launching : public ::testing::Test {
     const auto on_end = [&](std::size_t i, const LaunchResult& result) {
       results_[jobs_[i].name] = result;
     };
-    return make_launcher("local", {"/bin/sh", {}, {}})
+    return make_launcher("local", {"/bin/sh", {}, {}, false})
         ->run(jobs_, {parallel_jobs, 1}, {on_end, on_wait, [](const std::string&) {}});
   }
 
