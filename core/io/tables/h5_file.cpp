@@ -8,11 +8,13 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "core/io/tables/h5_trial.h"
 
 namespace saccade {
 
 H5Handle open_h5_file(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) throw InputError(file.string(), "no such file");
+  try_h5_file(file);
   const H5Lock lock;
   const H5Handle access = {H5Pcreate(H5P_FILE_ACCESS), H5Pclose};
   H5Pset_file_locking(access, false, true);  // read-only media and parallel readers

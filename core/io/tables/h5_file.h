@@ -11,7 +11,8 @@
 
 namespace saccade {
 
-/// Opens a file to be read. InputError where there is none, or no HDF5 file.
+/// Opens a file to be read. InputError where there is none, no HDF5 file, or one that HDF5 does not
+/// survive (h5_trial.h).
 [[nodiscard]] H5Handle open_h5_file(const std::filesystem::path& file);
 
 /// An HDF5 file whose arrays are read whole or by their first index. InputError with "FILE:/path" for

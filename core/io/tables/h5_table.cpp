@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/io/files/atomic_file.h"
 #include "core/io/tables/h5_column.h"
+#include "core/io/tables/h5_file.h"
 #include "core/process/background_task.h"
 #include "core/process/parallel.h"
 
@@ -51,12 +52,6 @@ hid_t type_in_memory(H5Type type) {
       return H5T_NATIVE_UINT8;
   }
   return -1;
-}
-
-H5Handle open_to_read(const std::filesystem::path& file) {
-  const H5Handle access = {H5Pcreate(H5P_FILE_ACCESS), H5Pclose};
-  H5Pset_file_locking(access, false, true);  // read-only media and parallel readers
-  return {H5Fopen(file.c_str(), H5F_ACC_RDONLY, access), H5Fclose};
 }
 
 bool has_column(hid_t file, const std::string& group, const std::string& name) {
@@ -189,11 +184,8 @@ void H5TableWriter::close() {
 
 void read_h5_table(const std::filesystem::path& name, const std::string& group, std::uint64_t count,
                    std::uint64_t begin, std::span<const H5Target> columns) {
+  const H5Handle file = open_h5_file(name);
   const H5Lock lock;
-  if (!std::filesystem::exists(name)) throw InputError(name.string(), "no such file");
-  const H5Handle file = open_to_read(name);
-  if (!file.valid())
-    throw InputError(name.string(), "is no HDF5 file, or is damaged (HDF5: " + h5_reason() + ")");
   for (const H5Target& column : columns) {
     const std::string location = name.string() + ":/" + group + "/" + column.name;
     const H5Handle dataset = open_column(file, group, column.name, location, count);
@@ -203,9 +195,10 @@ void read_h5_table(const std::filesystem::path& name, const std::string& group, 
 
 bool has_h5_column(const std::filesystem::path& name, const std::string& group,
                    const std::string& column) {
+  if (!is_hdf5(name)) return false;
+  const H5Handle file = open_h5_file(name);
   const H5Lock lock;
-  const H5Handle file = open_to_read(name);
-  return file.valid() && has_column(file, group, column);
+  return has_column(file, group, column);
 }
 
 }  // namespace saccade

@@ -64,7 +64,8 @@ class H5TableWriter {
 void read_h5_table(const std::filesystem::path& file, const std::string& group, std::uint64_t count,
                    std::uint64_t begin, std::span<const H5Target> columns);
 
-/// Whether the group of a file has a column; false as well where the file cannot be opened.
+/// Whether the group of a file has a column; false as well where it is no HDF5 file. InputError where it
+/// is one that cannot be opened.
 [[nodiscard]] bool has_h5_column(const std::filesystem::path& file, const std::string& group,
                                  const std::string& name);
 
