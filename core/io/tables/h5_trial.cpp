@@ -92,10 +92,7 @@ void read_value(hid_t dataset, hid_t space, hid_t type, bool is_last) {
   H5Dread(dataset, type, memory, space, H5P_DEFAULT, value.data());
 }
 
-void read_dataset(hid_t file, const char* name) {
-  const hid_t dataset = H5Dopen2(file, name, H5P_DEFAULT);
-  if (dataset < 0) return;
-  H5Aiterate2(dataset, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, read_attribute, nullptr);
+void read_dataset(hid_t dataset) {
   const hid_t space = H5Dget_space(dataset);
   const hid_t type = H5Dget_type(dataset);
   const hid_t layout = H5Dget_create_plist(dataset);
@@ -115,14 +112,21 @@ void read_dataset(hid_t file, const char* name) {
   }
 }
 
-herr_t visit(hid_t file, const char* name, const H5O_info_t* info, void* /*data*/) {
-  if (info->type == H5O_TYPE_DATASET) {
-    read_dataset(file, name);
-  } else if (info->type == H5O_TYPE_GROUP) {
-    const hid_t group = H5Gopen2(file, name, H5P_DEFAULT);
-    if (group >= 0)
-      H5Aiterate2(group, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, read_attribute, nullptr);
-  }
+herr_t visit_link(hid_t group, const char* name, const H5L_info_t* link, void* visited);
+
+void visit_object(hid_t object, std::set<haddr_t>& visited) {
+  H5O_info_t info{};
+  if (H5Oget_info2(object, &info, H5O_INFO_BASIC) < 0 || !visited.insert(info.addr).second) return;
+  H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, read_attribute, nullptr);
+  if (info.type == H5O_TYPE_DATASET) read_dataset(object);
+  if (info.type == H5O_TYPE_GROUP)
+    H5Literate(object, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, visit_link, &visited);
+}
+
+/// Goes on where an object cannot be opened, which H5Ovisit() does not.
+herr_t visit_link(hid_t group, const char* name, const H5L_info_t* link, void* visited) {
+  const hid_t object = link->type == H5L_TYPE_HARD ? H5Oopen(group, name, H5P_DEFAULT) : -1;
+  if (object >= 0) visit_object(object, *static_cast<std::set<haddr_t>*>(visited));
   return 0;
 }
 
@@ -131,7 +135,9 @@ void read_all(const std::string& name) {
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
   H5Pset_file_locking(access, false, true);
   const hid_t file = H5Fopen(name.c_str(), H5F_ACC_RDONLY, access);
-  if (file >= 0) H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_NATIVE, visit, nullptr, H5O_INFO_BASIC);
+  const hid_t root = H5Oopen(file, "/", H5P_DEFAULT);
+  std::set<haddr_t> visited;
+  if (root >= 0) visit_object(root, visited);
 }
 
 }  // namespace trial
