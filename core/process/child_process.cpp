@@ -25,6 +25,9 @@
 namespace saccade {
 namespace {
 
+/// The system takes that long at most to end a process of another parent that has been killed.
+constexpr int kKillTimeoutMs = 5000;
+
 constexpr std::array kInterrupts{SIGINT, SIGTERM, SIGHUP};
 volatile std::sig_atomic_t interrupted = 0;
 std::array<struct sigaction, kInterrupts.size()> former_actions;
@@ -172,6 +175,9 @@ std::optional<ChildEnd> ChildProcess::poll_told_end() {
 double ChildProcess::memory_mb() const { return pid_ > 0 ? largest_memory_mb(pid_) : 0; }
 
 void ChildProcess::stop() const {
+  // The number of one whose end was told may be another's by now.
+  pollfd told{descriptor_, POLLIN, 0};
+  if (is_told_ && ::poll(&told, 1, 0) != 0) return;
   if (pid_ > 0) ::kill(-pid_, SIGTERM);
 }
 
@@ -179,7 +185,11 @@ void ChildProcess::kill_and_close() {
   // One whose end was told, but not heard, is gone, and its number may be another's by now.
   if (pid_ > 0 && !(is_told_ && poll_told_end())) {
     ::kill(-pid_, SIGKILL);
-    if (!is_told_) waitpid(pid_, nullptr, 0);
+    pollfd told{descriptor_, POLLIN, 0};
+    if (is_told_)
+      ::poll(&told, 1, kKillTimeoutMs);
+    else
+      waitpid(pid_, nullptr, 0);
     pid_ = -1;
   }
   if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));

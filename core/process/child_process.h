@@ -16,8 +16,8 @@ struct ChildEnd {
   int signal = 0;
   /// Of the process and those below it that it waited for.
   double cpu_s = 0;
-  /// Of the largest one; at least what this program had taken when it started them, which the
-  /// system counts as theirs.
+  /// Of the largest one; at least what their parent had taken when it started them, which the system
+  /// counts as theirs.
   double peak_memory_mb = 0;
 
   /// "exit code 2" or "killed by signal 9 (Killed)".

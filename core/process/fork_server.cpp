@@ -6,12 +6,14 @@
 #include <spawn.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
+#include <sys/uio.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -27,6 +29,7 @@ namespace {
 constexpr const char* kServerWord = "fork-server";
 /// The server's socket is its input, so that nothing has to tell it a number.
 constexpr int kServerSocket = STDIN_FILENO;
+constexpr std::array kIgnored{SIGINT, SIGTERM, SIGHUP, SIGPIPE};
 
 [[noreturn]] void fail_to_serve(const char* what, int error) {
   throw InputError("a process of its own",
@@ -122,7 +125,7 @@ struct Served {
   int end_pipe;
 };
 
-/// Where the words are told what the program is called.
+/// /dev/null becomes the input, which closes the server's socket, and the log both outputs.
 void open_streams(const std::string& log) {
   const int nothing = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
   const int file = ::open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
@@ -130,8 +133,8 @@ void open_streams(const std::string& log) {
   ::dup2(nothing, STDIN_FILENO);
   ::dup2(file, STDOUT_FILENO);
   ::dup2(file, STDERR_FILENO);
-  ::close(nothing);
-  ::close(file);
+  for (const int opened : {nothing, file})
+    if (opened > STDERR_FILENO) ::close(opened);
 }
 
 [[noreturn]] void run_copy(const std::function<int(int, char**)>& command, const Request& request,
@@ -139,7 +142,7 @@ void open_streams(const std::string& log) {
   ::setpgid(0, 0);
   ::close(request.end_pipe);
   for (const Served& other : others) ::close(other.end_pipe);
-  open_streams(request.log);  // the socket is closed by that
+  open_streams(request.log);
   std::vector<std::string> words = request.words;
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
@@ -202,10 +205,12 @@ int serve_forks(const std::function<int(int, char**)>& command) {
   struct sigaction wake {};
   wake.sa_handler = nothing;
   sigaction(SIGCHLD, &wake, nullptr);
-  ::signal(SIGPIPE, SIG_IGN);
+  // It lives as long as its socket: a signal to all processes of a session is for its copies, which
+  // end in good order, and it is to tell of that.
+  for (const int ignored : kIgnored) ::signal(ignored, SIG_IGN);
   const auto restored = [&](int argc, char** argv) {
     ::signal(SIGCHLD, SIG_DFL);
-    ::signal(SIGPIPE, SIG_DFL);
+    for (const int ignored : kIgnored) ::signal(ignored, SIG_DFL);
     sigprocmask(SIG_SETMASK, &before, nullptr);
     return command(argc, argv);
   };

@@ -20,8 +20,9 @@ class ForkServer {
   ForkServer(const ForkServer&) = delete;
   ForkServer& operator=(const ForkServer&) = delete;
 
-  /// `words`: what the program is called and its arguments. Everything else is as if ChildProcess
-  /// had started it.
+  /// `words`: what the program is called and its arguments; the system's list of processes shows those of
+  /// the server instead. Everything else is as if ChildProcess had started it. Throws InputError when it
+  /// cannot be started, or the log not be written.
   [[nodiscard]] ChildProcess start(const std::vector<std::string>& words,
                                    const std::filesystem::path& log);
 

@@ -112,6 +112,19 @@ TEST_F(ForkServing, NothingOutlivesItsHandle) {
   EXPECT_FALSE(is_alive(left.front()));
 }
 
+TEST_F(ForkServing, ASignalToAllEndsTheCommandsInGoodOrder) {
+  ChildProcess endless = start_endless();
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));  // until it listens to signals
+  const std::vector<pid_t> servers = children_of(::getpid());
+  ASSERT_EQ(servers.size(), 1U);
+  ::kill(servers.front(), SIGTERM);
+  endless.stop();
+  EXPECT_EQ(end_of(endless).exit_code, 128 + SIGTERM);
+  EXPECT_THAT(log(), HasSubstr("saccade: interrupted (SIGTERM)"));
+  ChildProcess next = start({"--version"});
+  EXPECT_EQ(end_of(next).exit_code, 0);
+}
+
 TEST_F(ForkServing, AServerThatDiesTakesItsCommandsAlong) {
   ChildProcess endless = start_endless();
   const std::vector<pid_t> servers = children_of(::getpid());

@@ -34,18 +34,26 @@ struct Running {
 /// Starts commands of jobs.
 class Starter {
  public:
-  Starter(std::filesystem::path program, bool is_fork_server) : program_(std::move(program)) {
-    if (is_fork_server) server_.emplace(program_);
-  }
+  Starter(std::filesystem::path program, bool is_fork_server)
+      : program_(std::move(program)), is_fork_server_(is_fork_server) {}
 
   ChildProcess start(const LaunchJob& job, std::size_t command) {
     std::vector<std::string> words{"saccade"};
     words.insert(words.end(), job.commands[command].begin(), job.commands[command].end());
-    return server_ ? server_->start(words, job.log) : ChildProcess(program_, words, job.log);
+    if (!is_fork_server_) return ChildProcess(program_, words, job.log);
+    try {
+      if (!server_) server_.emplace(program_);
+      return server_->start(words, job.log);
+    } catch (const InputError&) {
+      // Somebody may have killed the server, and with it the jobs that it had started, but no others.
+      server_.emplace(program_);
+      return server_->start(words, job.log);
+    }
   }
 
  private:
   std::filesystem::path program_;
+  bool is_fork_server_;
   std::optional<ForkServer> server_;
 };
 

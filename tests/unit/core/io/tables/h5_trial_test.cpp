@@ -83,6 +83,8 @@ TEST(H5Trial, AFileThatEndsTheProcessIsAnError) {
                                     ": is damaged in a way that HDF5 does not survive: it "));
   EXPECT_THAT(error_of([&] { return H5File(file).shape("values").size(); }),
               ::testing::HasSubstr("does not survive"));
+  const std::string again = problem_of(file);
+  EXPECT_THAT(again, ::testing::HasSubstr("does not survive")) << "it was remembered as sound";
   // Repaired, it is another version.
   write_chunked(file, 1234);
   EXPECT_EQ(H5File(file).shape("values"), std::vector<std::uint64_t>{4 * 1234});
