@@ -1,6 +1,7 @@
 // Preloaded into a program (LD_PRELOAD) it makes calls of the system fail as a bad disk does:
 //   SACCADE_FAULT        KIND:N, the N-th call (from 1) of that kind fails, once. Kinds: no-space and io-error (of a write),
-//                        short-write (half is written), interrupted (EINTR), create, rename, sync, truncate
+//                        short-write (half is written), interrupted (EINTR), create, rename, sync, truncate; and pause:
+//                        the N-th call of any of these kinds never returns, so that the program can be met at that place
 //   SACCADE_FAULT_UNDER  the folder whose files are meant; other files are as they are
 //   SACCADE_FAULT_COUNT  a file to which the number of calls of the kind is written whenever it grows
 
@@ -31,7 +32,8 @@ enum class Kind {
   kCreate,
   kRename,
   kSync,
-  kTruncate
+  kTruncate,
+  kPause
 };
 
 struct Plan {
@@ -60,7 +62,8 @@ struct Plan {
                   {"create", Kind::kCreate},
                   {"rename", Kind::kRename},
                   {"sync", Kind::kSync},
-                  {"truncate", Kind::kTruncate}};
+                  {"truncate", Kind::kTruncate},
+                  {"pause", Kind::kPause}};
     for (const auto& known : kKinds)
       if (text.compare(0, colon, known.name) == 0) kind = known.kind;
   }
@@ -92,7 +95,7 @@ bool is_meant(int descriptor) {
   return is_meant(path);
 }
 
-/// Whether the call that is about to be made is the one that fails.
+/// Whether the call that is about to be made is the one that fails; the one that pauses stays here.
 bool fails_now() {
   const long call = ++plan().calls;
   if (plan().count_file != nullptr) {
@@ -104,12 +107,15 @@ bool fails_now() {
     [[maybe_unused]] const ssize_t written =
         pwrite_file(file, text, static_cast<size_t>(length), 0);
   }
-  return call == plan().number;
+  const bool is_the_one = call == plan().number;
+  while (is_the_one && plan().kind == Kind::kPause) ::pause();
+  return is_the_one;
 }
 
 bool is_write_fault() {
   return plan().kind == Kind::kNoSpace || plan().kind == Kind::kIoError ||
-         plan().kind == Kind::kShortWrite || plan().kind == Kind::kInterrupted;
+         plan().kind == Kind::kShortWrite || plan().kind == Kind::kInterrupted ||
+         plan().kind == Kind::kPause;
 }
 
 /// Makes a write of `size` bytes fail: true with errno, or a shorter `size`.
@@ -123,11 +129,11 @@ bool spoil_write(int descriptor, size_t& size) {
   return true;
 }
 
-bool spoils(Kind kind, const char* path) {
-  return plan().kind == kind && is_meant(path) && fails_now();
-}
+bool concerns(Kind kind) { return plan().kind == kind || plan().kind == Kind::kPause; }
+
+bool spoils(Kind kind, const char* path) { return concerns(kind) && is_meant(path) && fails_now(); }
 bool spoils(Kind kind, int descriptor) {
-  return plan().kind == kind && is_meant(descriptor) && fails_now();
+  return concerns(kind) && is_meant(descriptor) && fails_now();
 }
 
 int fail_with(int error) {
