@@ -18,6 +18,7 @@
 #include "simulator/scene/animation/model_motion.h"
 #include "simulator/scene/animation/node_animation.h"
 #include "simulator/scene/mesh/mesh_import.h"
+#include "simulator/scene/mesh/quake3/quake3_map.h"
 #include "simulator/scene/world/world.h"
 
 namespace saccade {
@@ -181,7 +182,7 @@ bool is_mesh_name(const fs::path& path) {
   static const std::set<std::string> kNotBuiltIn{
       ".wrl",  ".vrml", ".x3dv", ".blend", ".max", ".ma",   ".mb",  ".usd", ".usda",
       ".usdc", ".usdz", ".abc",  ".c4d",   ".skp", ".step", ".stp", ".iges"};
-  if (kNotBuiltIn.contains(ending)) return true;
+  if (kNotBuiltIn.contains(ending) || is_quake3_map("map" + ending)) return true;
   // Some endings are those of meshes and of events, as .raw of Prophesee's cameras: here events
   // are meant.
   return !ending.empty() && !is_event_file_name(path) &&

@@ -32,8 +32,16 @@ void SceneRemarks::cut_out(const std::string& material, const std::string& file)
   add_once(cut_out_files_, file);
 }
 
+void SceneRemarks::show_grey(const std::string& picture, const std::string& file) {
+  add_once(missing_, picture);
+  add_once(missing_files_, file);
+}
+
 std::vector<std::string> SceneRemarks::lines() const {
   std::vector<std::string> lines = said_;
+  if (!missing_.empty())
+    lines.push_back(fmt::format("{}: missing pictures are grey 0.5: {}", first_of(missing_files_),
+                                first_of(missing_)));
   if (!cut_out_.empty())
     lines.push_back(
         fmt::format("{}: translucent materials are cut out where their opacity is below 0.5: {}",

@@ -16,6 +16,9 @@ class SceneRemarks {
   /// A material of `file` that is translucent: these share one line as well.
   void cut_out(const std::string& material, const std::string& file);
 
+  /// A picture that `file` asks for, that is missing and for which grey is shown: likewise.
+  void show_grey(const std::string& picture, const std::string& file);
+
   /// In the order in which they came, the shared lines last.
   [[nodiscard]] std::vector<std::string> lines() const;
 
@@ -25,6 +28,7 @@ class SceneRemarks {
   Names said_;
   Names ignored_, ignoring_files_;
   Names cut_out_, cut_out_files_;
+  Names missing_, missing_files_;
 };
 
 }  // namespace saccade

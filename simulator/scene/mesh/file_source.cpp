@@ -112,6 +112,23 @@ std::optional<fs::path> FileSource::find(const fs::path& file) const {
   return found;
 }
 
+std::vector<fs::path> FileSource::list(const fs::path& folder) const {
+  std::vector<fs::path> files;
+  if (zip_) {
+    const fs::path place(member_name(folder));
+    for (const std::string& member : zip_->members())
+      if (!member.ends_with('/') && fs::path(member).parent_path() == place)
+        files.emplace_back(member);
+  } else {
+    std::error_code none;
+    for (const fs::directory_entry& entry :
+         fs::directory_iterator(folder.empty() ? fs::path(".") : folder, none))
+      if (entry.is_regular_file(none)) files.push_back(folder / entry.path().filename());
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
 std::optional<Bytes> FileSource::read(const fs::path& file) const {
   std::optional<Bytes> bytes = read_unreported(file);
   if (bytes && reporting_ == Reporting::kInputLog) {

@@ -39,6 +39,8 @@ class FileSource {
   [[nodiscard]] std::optional<std::filesystem::path> find(const std::filesystem::path& file) const;
   /// nullopt when the file is missing. Throws InputError when it cannot be read to its end.
   [[nodiscard]] std::optional<Bytes> read(const std::filesystem::path& file) const;
+  /// The files that are in a folder itself, by their names; none where there is no such folder.
+  [[nodiscard]] std::vector<std::filesystem::path> list(const std::filesystem::path& folder) const;
   [[nodiscard]] const std::filesystem::path& archive() const { return archive_; }
 
  private:

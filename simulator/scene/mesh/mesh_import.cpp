@@ -22,6 +22,8 @@
 #include "simulator/scene/mesh/gltf_lights.h"
 #include "simulator/scene/mesh/gltf_material.h"
 #include "simulator/scene/mesh/model_import.h"
+#include "simulator/scene/mesh/quake3/quake3_map.h"
+#include "simulator/scene/mesh/quake3/quake3_material.h"
 #include "simulator/scene/mesh/relief.h"
 
 namespace saccade {
@@ -339,6 +341,11 @@ Mesh MeshImporter::read(const fs::path& file, const std::optional<std::string>& 
   ReadMaterial read_material = [&](std::size_t index) {
     return import_material(model, model.materials[index], context);
   };
+  std::optional<Quake3Materials> map_materials;
+  if (is_quake3_map(location.file)) {
+    map_materials.emplace(context);
+    read_material = [&](std::size_t index) { return map_materials->read(model.materials[index]); };
+  }
   std::optional<GltfMaterials> gltf_materials;
   if (gltf) {
     gltf_materials.emplace(*gltf, context);

@@ -15,11 +15,13 @@
 #include <cstring>
 #include <exception>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "core/error.h"
 #include "simulator/scene/mesh/assimp_files.h"
+#include "simulator/scene/mesh/quake3/quake3_map.h"
 
 namespace saccade {
 namespace {
@@ -365,10 +367,30 @@ bool is_consistent(const Model& model) {
          });
 }
 
+Model read_map(const FileSource& own, const fs::path& file) {
+  const std::optional<Bytes> bytes = own.read(file);
+  if (!bytes) throw std::runtime_error("cannot be opened for reading");
+  Model model = read_quake3_map(*bytes);
+  model.opened = {file.generic_string()};
+  return model;
+}
+
+/// What is wrong with an archive of maps in place of one of its maps.
+std::string problem_of_archive(const fs::path& file, const std::string& source_name) {
+  std::string first;
+  std::size_t count = 0;
+  for (const fs::path& member : FileSource(file, FileSource::Reporting::kNone).list("maps"))
+    if (is_quake3_map(member) && count++ == 0) first = member.generic_string();
+  if (count == 0) return "is an archive without maps";
+  return fmt::format("is an archive of {} maps: name one of them, as in '{}!/{}'", count,
+                     source_name, first);
+}
+
 }  // namespace
 
 std::string import_in_child(const FileSource& own, const fs::path& file,
                             const ReplacedFiles& replaced) {
+  if (is_quake3_map(file)) return to_bytes(read_map(own, file));
   Assimp::Importer importer;  // owns the AssimpFiles
   auto* const files = new AssimpFiles(own, replaced);
   Model model = model_of(load(importer, files, file));
@@ -378,10 +400,13 @@ std::string import_in_child(const FileSource& own, const fs::path& file,
 
 void check_model_format(const fs::path& file, const std::string& source_name) {
   const std::string extension = file.extension().string();
+  if (is_quake3_map(file)) return;
+  if (extension == ".pk3" && fs::is_regular_file(file))
+    throw InputError(source_name, problem_of_archive(file, source_name));
   if (!Assimp::Importer().IsExtensionSupported(extension))
     throw InputError(source_name,
                      fmt::format("meshes of format '{}' cannot be read; OBJ, glTF, PLY, "
-                                 "COLLADA, FBX, STL and others can",
+                                 "COLLADA, FBX, STL, BSP and others can",
                                  extension));
 }
 

@@ -10,8 +10,8 @@
 
 namespace saccade {
 
-/// Reads a model through assimp in a process of its own, so that an importer that crashes, hangs or
-/// takes all memory becomes an error. `file` of `source`; `source_name` is what errors name. Throws
+/// Reads a model through assimp, or a Quake III map, in a process of its own, so that an importer
+/// that crashes, hangs or takes all memory becomes an error. `file` of `source`; `source_name` is what errors name. Throws
 /// InputError when the format is unknown, the file is damaged, its material library is missing, or
 /// the importer dies.
 [[nodiscard]] Model import_model(const FileSource& source, const std::filesystem::path& file,

@@ -1,6 +1,12 @@
 // Models, textures and the configuration of a simulation.
 
+#include <array>
+#include <cstdint>
 #include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "core/config/config.h"
 #include "core/error.h"
@@ -9,6 +15,8 @@
 #include "simulator/scene/mesh/ac3d_file.h"
 #include "simulator/scene/mesh/gltf_file.h"
 #include "simulator/scene/mesh/model_import.h"
+#include "simulator/scene/mesh/quake3/quake3_map.h"
+#include "simulator/scene/mesh/quake3/quake3_shader.h"
 #include "simulator/scene/texture/picture.h"
 #include "simulator/simulation_config.h"
 #include "tests/fuzz/fuzz_target.h"
@@ -86,6 +94,46 @@ void decode_models(const fs::path& folder, const std::string& file) {
   static_cast<void>(import_model(source, folder / model, model, replaced, kLimits));
 }
 
+/// A map of one triangle and a player; entities come behind the tables of numbers.
+void write_quake3(const fs::path& folder) {
+  std::string map("IBSP\x2e\0\0\0", 8);
+  const std::string entities =
+      "{\"classname\" \"worldspawn\"}{\"classname\" \"info_player_start\" \"origin\" \"1 2 3\"}";
+  constexpr std::array<std::uint32_t, 17> kSizes{0, 72, 0, 0, 0, 0, 0, 40, 0, 0, 132, 12, 0, 104};
+  std::uint32_t offset = 144;
+  const auto put = [&map](std::uint32_t value) {
+    map.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  for (std::size_t lump = 0; lump < kSizes.size(); ++lump) {
+    put(lump == 0 ? 144 + 72 + 40 + 132 + 12 + 104 : offset);
+    put(lump == 0 ? static_cast<std::uint32_t>(entities.size()) : kSizes[lump]);
+    offset += kSizes[lump];
+  }
+  map += "textures/a" + std::string(62, '\0') + std::string(24, '\0');
+  for (const std::uint32_t value : {0U, 1U, 0U, 0U}) put(value);  // faces of the world
+  map.append(132, '\0');
+  for (const std::uint32_t corner : {0U, 1U, 2U}) put(corner);
+  for (const std::uint32_t value : {0U, 0U, 1U, 0U, 3U, 0U, 3U}) put(value);
+  write_bytes(folder / "m.bsp", map + std::string(76, '\0') + entities);
+  write_bytes(folder / "s.shader",
+              "textures/a\n{\nsurfaceparm nomarks\n{\nmap $lightmap\n}\n{\nmap a.tga\nblendFunc "
+              "filter\ntcMod scale 2 2\n}\n}\n");
+}
+
+void decode_quake3(const fs::path& folder, const std::string& file) {
+  const std::vector<std::byte> content = read_file_bytes(folder / file);
+  const std::string_view text(reinterpret_cast<const char*>(content.data()), content.size());
+  if (file == "s.shader") {
+    static_cast<void>(parse_quake3_script(text));
+    return;
+  }
+  try {
+    static_cast<void>(read_quake3_map(Bytes(text.begin(), text.end())));
+  } catch (const std::runtime_error& error) {
+    throw InputError(file, error.what());
+  }
+}
+
 void write_textures(const fs::path& folder) {
   write_bytes(folder / "a.png", encode_png(ImageU8(3, 2, 9)));
   write_bytes(folder / "a.hdr",
@@ -139,6 +187,12 @@ const std::vector<Target>& targets() {
        write_models,
        {"element face 4294967295\n", "numvert 4294967295\n", "kids 4294967295\n", "f 1 2 3\n",
         "vt 1e308 nan\n"}},
+      {"quake3",
+       {"m.bsp", "s.shader"},
+       decode_quake3,
+       write_quake3,
+       {"IBSP", "\"classname\" \"light\"", "\"model\" \"*1\"", "\"angles\" \"1e300 nan 0\"",
+        "blendfunc", "alphafunc", "skyparms", "deformvertexes autosprite", "/*", "//"}},
       {"textures",
        {"a.png", "a.hdr"},
        decode_textures,
