@@ -54,7 +54,9 @@ std::vector<std::filesystem::path> still_files(const std::vector<MeshOptions>& m
 }
 
 MeshSurface surface_of(const MeshOptions& options) {
-  return {options.texture, options.texture_seed, options.reflectance};
+  std::optional<Gloss> gloss;
+  if (options.gloss) gloss = make_gloss(options.gloss->reflectance, options.gloss->roughness);
+  return {options.texture, options.texture_seed, options.reflectance, gloss};
 }
 
 InstanceLabel label_of(const MeshOptions& options, const std::vector<std::string>& classes) {
@@ -121,7 +123,7 @@ void add_world_parts(const World& world, SceneBuilder& builder) {
 Scene build_scene(const SceneOptions& options, ColourChannel channel) {
   SceneBuilder builder;
   MeshImporter importer({options.missing_texture, options.lighting == Lighting::kLambertian,
-                         channel, takes_lights(options), options.normal_maps});
+                         channel, takes_lights(options), options.normal_maps, options.gloss});
   World world;
   if (options.world) world = make_world(*options.world, importer.remarks(), channel);
   std::vector<MeshOptions> items = options.meshes;

@@ -214,7 +214,8 @@ std::string describe_scene(const SceneOptions& options) {
   MeshImporter importer({.missing_texture = MissingTexture::kGrey,
                          .is_lit = options.lighting == Lighting::kLambertian,
                          .takes_lights = takes_lights(options),
-                         .takes_normal_maps = options.normal_maps});
+                         .takes_normal_maps = options.normal_maps,
+                         .takes_gloss = options.gloss});
   std::string text;
   std::map<fs::path, int> uses;
   for (const MeshOptions& item : options.meshes) ++uses[item.file];

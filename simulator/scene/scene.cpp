@@ -274,6 +274,14 @@ TexelHomography Scene::texel_homography(TriangleId triangle, const Eigen::Vector
           depth,          surface.texture, surface.factor};
 }
 
+void Scene::State::set_light(const Ray& ray, const LitPoint& point, TriangleId triangle,
+                             SurfaceSample& seen) const {
+  seen.irradiance =
+      surfaces[triangle].with_self_light(illumination->irradiance(point, seen.lights));
+  if (const Gloss* gloss = gloss_of(triangle))
+    seen.mirrored = illumination->mirrored({point, ray.origin}, *gloss, seen.lights);
+}
+
 void Scene::State::illuminate(std::span<const Ray> rays, std::span<const TriangleId> triangles,
                               std::span<SurfaceSample> samples, bool within_cones) const {
   SACCADE_CHECK(rays.size() <= kRayPacket && triangles.size() == rays.size() &&
@@ -293,8 +301,7 @@ void Scene::State::illuminate(std::span<const Ray> rays, std::span<const Triangl
   for (std::size_t k = 0; k < n; ++k) {
     SurfaceSample& surface = samples[owners[k]];
     surface.lights = lights[k];
-    surface.irradiance = surfaces[triangles[owners[k]]].with_self_light(
-        illumination->irradiance(points[k], lights[k]));
+    set_light(rays[owners[k]], points[k], triangles[owners[k]], surface);
   }
 }
 
@@ -316,11 +323,12 @@ void Scene::find_lights(std::span<const Ray> rays, std::span<const TriangleId> t
                                                lights, false, known);
 }
 
-double Scene::irradiance(const Ray& ray, TriangleId triangle, const SurfaceSample& surface) const {
-  if (!state_->illumination || !(surface.distance > 0)) return 1;
-  return state_->surfaces[triangle].with_self_light(state_->illumination->irradiance(
-      state_->surface_point(ray, surface, triangle), surface.lights));
+void Scene::set_light(const Ray& ray, TriangleId triangle, SurfaceSample& surface) const {
+  if (!state_->illumination || !(surface.distance > 0)) return;
+  state_->set_light(ray, state_->surface_point(ray, surface, triangle), triangle, surface);
 }
+
+bool Scene::is_glossy(TriangleId triangle) const { return state_->gloss_of(triangle) != nullptr; }
 
 bool Scene::is_lit() const { return state_->illumination.has_value(); }
 
@@ -346,12 +354,12 @@ NormalTextureSample Scene::sample_normal_map(const Ray& ray, TriangleId triangle
 
 bool Scene::has_spots() const { return state_->illumination && state_->illumination->has_cones(); }
 
-std::optional<LightRange> Scene::irradiance_range(const Ray& from_ray, const SurfaceSample& from,
-                                                  const Ray& middle_ray, const Ray& to_ray,
-                                                  const SurfaceSample& to, TriangleId triangle,
-                                                  LightSet lights,
-                                                  const VectorRange* mapped) const {
-  if (!state_->illumination || triangle == kNothing) return LightRange{};
+std::optional<SurfaceLightRange> Scene::light_range(const Ray& from_ray, const SurfaceSample& from,
+                                                    const Ray& middle_ray, const Ray& to_ray,
+                                                    const SurfaceSample& to, TriangleId triangle,
+                                                    LightSet lights,
+                                                    const VectorRange* mapped) const {
+  if (!state_->illumination || triangle == kNothing) return SurfaceLightRange{};
   if (!(from.distance > 0 && to.distance > 0)) return std::nullopt;
   const LitPoint first = state_->surface_point(from_ray, from, triangle);
   const LitPoint last = state_->surface_point(to_ray, to, triangle);
@@ -366,12 +374,16 @@ std::optional<LightRange> Scene::irradiance_range(const Ray& from_ray, const Sur
     normal = mapped_normal(state_->normal_map_axes(from_ray, from.distance, triangle),
                            state_->normal_map_axes(to_ray, to.distance, triangle), *mapped,
                            last.time_s - first.time_s);
-  LightRange range = state_->illumination->irradiance_range(first, middle, last, lights,
-                                                            normal ? &*normal : nullptr);
+  const VectorRange* const bounds = normal ? &*normal : nullptr;
+  SurfaceLightRange range;
+  if (const Gloss* gloss = state_->gloss_of(triangle))
+    range.mirrored = state_->illumination->mirrored_range(
+        {first, from_ray.origin}, middle, {last, to_ray.origin}, *gloss, lights, bounds);
   const TriangleSurface& surface = state_->surfaces[triangle];
-  if (std::isinf(surface.self_light)) return LightRange{};
-  range.low = surface.with_self_light(range.low);
-  range.high = surface.with_self_light(range.high);
+  if (std::isinf(surface.self_light)) return range;
+  range.irradiance = state_->illumination->irradiance_range(first, middle, last, lights, bounds);
+  range.irradiance.low = surface.with_self_light(range.irradiance.low);
+  range.irradiance.high = surface.with_self_light(range.irradiance.high);
   return range;
 }
 

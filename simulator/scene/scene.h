@@ -61,7 +61,7 @@ struct KnownLights {
 };
 
 /// What the radiance of a visible point is made of: irradiance * factor * texture(x, y, level),
-/// without a texture irradiance * x.
+/// without a texture irradiance * x, and what it mirrors.
 struct SurfaceSample {
   const Texture* texture = nullptr;
   double x = 0, y = 0;      ///< texel coordinates; without a texture x is the albedo
@@ -71,11 +71,24 @@ struct SurfaceSample {
   double level = 0;         ///< of the texture's pyramid; <= 0: the texture itself
   LightSet lights = 0;      ///< that light the point
   double normal_level = 0;  ///< of the pyramid of the surface's normal map
+  double mirrored = 0;      ///< radiance of the lights that a glossy surface shows
 
   [[nodiscard]] double radiance() const {
-    if (texture == nullptr) return irradiance * x;
+    if (texture == nullptr) return irradiance * x + mirrored;
     const double value = level > 0 ? texture->at_texel(x, y, level) : texture->at_texel(x, y);
-    return irradiance * (factor * value);
+    return irradiance * (factor * value) + mirrored;
+  }
+};
+
+/// Bounds of what the light makes of a point over an interval of time.
+struct SurfaceLightRange {
+  LightRange irradiance;
+  LightRange mirrored{0, 0, 0, 0};
+
+  /// Of both ranges' light one or the other.
+  void include(const SurfaceLightRange& other) {
+    irradiance.include(other.irradiance);
+    mirrored.include(other.mirrored);
   }
 };
 
@@ -168,7 +181,8 @@ class Scene {
                                                  const Eigen::Vector3d& position,
                                                  const Eigen::Matrix3d& world_from_camera) const;
   /// Finds the lights that nothing hides from the points of at most 16 samples along `rays` at
-  /// `triangles` (spots whether or not a point is in their cone), and the irradiance: 1 in an unlit scene and for the background.
+  /// `triangles` (spots whether or not a point is in their cone), the irradiance (1 in an unlit scene
+  /// and for the background) and what is mirrored.
   void illuminate(std::span<const Ray> rays, std::span<const TriangleId> triangles,
                   std::span<SurfaceSample> samples) const;
   /// The lights alone, of at most 16 samples of triangles: those that `known`, one per sample, leaves
@@ -176,9 +190,9 @@ class Scene {
   void find_lights(std::span<const Ray> rays, std::span<const TriangleId> triangles,
                    std::span<const SurfaceSample> samples, std::span<const KnownLights> known,
                    std::span<LightSet> lights) const;
-  /// The irradiance of a sample if just `surface.lights` light it: without shadow rays.
-  [[nodiscard]] double irradiance(const Ray& ray, TriangleId triangle,
-                                  const SurfaceSample& surface) const;
+  /// Sets the irradiance of a sample, and what it mirrors, if just `surface.lights` light it: without
+  /// shadow rays.
+  void set_light(const Ray& ray, TriangleId triangle, SurfaceSample& surface) const;
   [[nodiscard]] bool is_lit() const;
   /// The flickers of its lights, each once; empty in steady light.
   [[nodiscard]] std::span<const Flicker> flickers() const;
@@ -190,14 +204,16 @@ class Scene {
                                            LightSet lights, PatchLighting& lighting) const;
   /// Whether some of its lights are spots, whose irradiance changes fast at the edge of their cone.
   [[nodiscard]] bool has_spots() const;
-  /// Bounds of the irradiance of what is seen of `triangle` from one ray to a later one, if just
-  /// `lights` light it: Illumination::irradiance_range(). `from` and `to` are the samples of both
+  /// Bounds of the irradiance of what is seen of `triangle` from one ray to a later one, and of what
+  /// it mirrors, if just `lights` light it: Illumination::irradiance_range(). `from` and `to` are the samples of both
   /// rays, `middle_ray` is halfway in time. nullopt where one misses the triangle's plane. With a
   /// normal map, `mapped` bounds its vector on the way.
-  [[nodiscard]] std::optional<LightRange> irradiance_range(
+  [[nodiscard]] std::optional<SurfaceLightRange> light_range(
       const Ray& from_ray, const SurfaceSample& from, const Ray& middle_ray, const Ray& to_ray,
       const SurfaceSample& to, TriangleId triangle, LightSet lights,
       const VectorRange* mapped = nullptr) const;
+  /// Whether a triangle mirrors lights.
+  [[nodiscard]] bool is_glossy(TriangleId triangle) const;
   /// Whether a normal map bends the shading normal of a triangle, of any at all without one.
   [[nodiscard]] bool has_normal_map(TriangleId triangle) const;
   [[nodiscard]] bool has_normal_maps() const;

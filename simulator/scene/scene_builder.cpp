@@ -190,6 +190,9 @@ Scene SceneBuilder::build(const Background& background) && {
                                 environment_);
     state->normals = std::move(all.normals);
     set_normal_frames(std::move(all.normal_frames), all.surfaces.size(), *state);
+    if (!all.glossy.empty()) state->glosses.resize(all.surfaces.size());
+    for (const GlossyTriangle& triangle : all.glossy)
+      state->glosses[triangle.number] = triangle.gloss;
   }
   state->surfaces = std::move(all.surfaces);
   state->interiors = std::move(all.interiors);

@@ -93,6 +93,10 @@ void describe(config::Fields& fields, MeshOptions& options) {
       .value("reflectance", options.reflectance,
              "Factor of the albedo of all its materials and textures.")
       .range(1e-6, 1e6);
+  fields.section(
+      "gloss", options.gloss,
+      "How all its materials mirror the lights of a scene with lighting: lambertian, beside "
+      "what they scatter. By default they do not, or as scene.gloss has it.");
   fields.choice("instances", options.instances,
                 {{"whole", Instances::kWhole}, {"nodes", Instances::kNodes}},
                 "What masks and labels tell apart: the whole mesh from other meshes, or also the "
@@ -151,6 +155,10 @@ void describe(config::Fields& fields, SceneOptions& options) {
   fields.choice("lighting", options.lighting,
                 {{"none", Lighting::kNone}, {"lambertian", Lighting::kLambertian}},
                 "Lighting model: none, where the albedo is the radiance, or lambertian.");
+  if (options.lighting == Lighting::kNone)
+    for (const MeshOptions& mesh : options.meshes)
+      fields.expect(!mesh.gloss, "meshes",
+                    "must not state 'gloss' without lights to mirror: state lighting: lambertian");
   if (options.lighting == Lighting::kLambertian) {
     fields
         .value("ambient", options.ambient,
@@ -173,6 +181,11 @@ void describe(config::Fields& fields, SceneOptions& options) {
     fields.value("normal_maps", options.normal_maps,
                  "Whether the normal maps of mesh files bend the normals that light falls on. "
                  "Normals of labels stay those of the triangles.");
+    fields.value(
+        "gloss", options.gloss,
+        "Whether surfaces of glTF files mirror the lights, by their factors of roughness and "
+        "metalness: one highlight per light, that moves with the camera. Surroundings are "
+        "not mirrored.");
     fields.value("lights_from_meshes", options.lights_from_meshes,
                  "Whether the lights of glTF files (KHR_lights_punctual) light the scene as well, "
                  "where their meshes stand. Those of meshes with a trajectory do not.");

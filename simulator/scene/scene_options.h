@@ -13,6 +13,7 @@
 #include "simulator/scene/animation/animation_options.h"
 #include "simulator/scene/light/environment_light.h"
 #include "simulator/scene/light/flicker.h"
+#include "simulator/scene/light/gloss.h"
 #include "simulator/scene/light/light_options.h"
 #include "simulator/scene/texture/texture_library.h"
 #include "simulator/scene/world/world_options.h"
@@ -40,6 +41,7 @@ struct MeshOptions {
   std::optional<std::filesystem::path> texture;  ///< in place of those of its materials
   std::optional<std::uint64_t> texture_seed;     ///< of a generated texture, in place of the file's
   double reflectance = 1;                        ///< multiplies every albedo
+  std::optional<GlossOptions> gloss;             ///< of all its materials, in place of the file's
   Instances instances = Instances::kWhole;
   /// Moves the mesh: its poses come after everything above. Its time 0 is the recording's.
   std::optional<MotionOptions> trajectory;
@@ -65,6 +67,7 @@ struct SceneOptions {
   std::optional<EnvironmentLightOptions> environment_light;
   std::vector<LightOptions> lights;
   bool normal_maps = true;                    ///< of mesh files, under lights
+  bool gloss = false;                         ///< of glTF files, by their roughness and metalness
   bool lights_from_meshes = false;            ///< adds those of glTF files
   double light_scale = 1 / std::numbers::pi;  ///< their intensity per candela or lux
 };

@@ -89,6 +89,12 @@ using ShadingNormals = std::array<Eigen::Vector3f, 3>;
 /// Of triangles without a normal map.
 constexpr std::uint32_t kNoFrame = std::numeric_limits<std::uint32_t>::max();
 
+/// A triangle that mirrors lights.
+struct GlossyTriangle {
+  TriangleId number;
+  Gloss gloss;
+};
+
 /// A part of a triangle.
 struct Patch {
   TriangleId triangle;
@@ -120,6 +126,7 @@ struct Scene::State {
   std::vector<NormalFrame> normal_frames;      ///< of triangles with a normal map
   std::vector<std::uint32_t> normal_frame_of;  ///< by triangle, or kNoFrame; empty: of none
   std::vector<std::shared_ptr<const NormalTexture>> normal_maps;  ///< keeps them alive
+  std::vector<Gloss> glosses;                                     ///< by triangle; empty: all matt
   std::vector<Cutout> cutouts;                                    ///< of the last triangles
   std::vector<std::uint16_t> triangle_instances;                  ///< from 1 on
   std::vector<SceneInstance> instances;                           ///< instance k is item k - 1
@@ -217,6 +224,14 @@ struct Scene::State {
   /// Of a whole triangle, found once.
   [[nodiscard]] const TriangleLighting& triangle_lighting(TriangleId triangle, double side);
 
+  /// nullptr: it is matt.
+  [[nodiscard]] const Gloss* gloss_of(TriangleId triangle) const {
+    if (glosses.empty() || triangle == kNothing || glosses[triangle].is_matt()) return nullptr;
+    return &glosses[triangle];
+  }
+  /// Sets what the point of a triangle at the end of a ray reflects of `seen.lights`.
+  void set_light(const Ray& ray, const LitPoint& point, TriangleId triangle,
+                 SurfaceSample& seen) const;
   /// As Scene::illuminate(). `within_cones`: of spots only those in whose cone a point is.
   void illuminate(std::span<const Ray> rays, std::span<const TriangleId> triangles,
                   std::span<SurfaceSample> samples, bool within_cones) const;

@@ -57,6 +57,8 @@ void append(Items& to, Items&& from) {
 void PreparedTriangles::append(PreparedTriangles&& other) {
   const auto first = static_cast<std::uint32_t>(surfaces.size());
   for (NormalFrame& frame : other.normal_frames) frame.triangle += first;
+  for (GlossyTriangle& triangle : other.glossy) triangle.number += first;
+  saccade::append(glossy, std::move(other.glossy));
   saccade::append(normal_frames, std::move(other.normal_frames));
   saccade::append(corners, std::move(other.corners));
   saccade::append(corner_indices, std::move(other.corner_indices));
@@ -109,6 +111,7 @@ bool TriangleSetup::add(const Triangle& triangle, PreparedTriangles& target) con
   target.surfaces.push_back(surface(triangle, plane, interior));
   target.interiors.push_back(interior);
   target.normals.push_back(shading_normals(triangle, plane.gradient));
+  add_gloss(triangle, target);
   if (mesh_.materials[triangle.material].normal_map) {
     target.normal_frames.push_back(normal_frame(triangle, interior, target.normals.back()));
     target.normal_frames.back().triangle = static_cast<std::uint32_t>(target.surfaces.size() - 1);
@@ -127,10 +130,17 @@ void TriangleSetup::add_animated(const Triangle& triangle, PreparedTriangles& ta
   target.surfaces.push_back(surface(triangle, {}, weights));
   target.interiors.push_back(weights);
   target.normals.push_back(ShadingNormals{});
+  add_gloss(triangle, target);
   if (const Texture* opacity = mesh_.materials[triangle.material].opacity.get()) {
     const TexelForms forms = texel_forms(*opacity, mesh_.uvs, triangle, weights);
     target.cutouts.push_back({forms.x, forms.y, opacity});
   }
+}
+
+void TriangleSetup::add_gloss(const Triangle& triangle, PreparedTriangles& target) const {
+  const Gloss& gloss = mesh_.materials[triangle.material].gloss;
+  if (!gloss.is_matt())
+    target.glossy.push_back({static_cast<TriangleId>(target.surfaces.size() - 1), gloss});
 }
 
 TriangleSurface TriangleSetup::surface(const Triangle& triangle, const AffineForm& plane,

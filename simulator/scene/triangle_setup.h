@@ -22,6 +22,7 @@ struct PreparedTriangles {
   std::vector<Cutout> cutouts;  ///< one per triangle, or none at all
   std::vector<NormalFrame>
       normal_frames;                     ///< of those that have a normal map, by their number here
+  std::vector<GlossyTriangle> glossy;    ///< those that are, by their number here
   std::vector<std::uint16_t> instances;  ///< what each of them is labelled with
 
   void append(PreparedTriangles&& other);
@@ -41,6 +42,8 @@ class TriangleSetup {
   void add_animated(const Triangle& triangle, PreparedTriangles& target) const;
 
  private:
+  /// Notes what the last triangle of `target` mirrors.
+  void add_gloss(const Triangle& triangle, PreparedTriangles& target) const;
   [[nodiscard]] TriangleSurface surface(const Triangle& triangle, const AffineForm& plane,
                                         const TriangleInterior& interior) const;
   [[nodiscard]] ShadingNormals shading_normals(const Triangle& triangle,

@@ -30,6 +30,12 @@ LightPath path_to(const LightOptions& light, const LitPoint& point) {
   return {direction, is_near ? 1.0 : std::numeric_limits<double>::infinity(), irradiance};
 }
 
+/// Unit vector.
+Eigen::Vector3d to_light(const LightOptions& light, const Eigen::Vector3d& point) {
+  return light.has_position() ? Eigen::Vector3d((light.position - point).normalized())
+                              : Eigen::Vector3d(-light.direction);
+}
+
 /// The range near a line of a quantity that is not negative.
 LightRange near_line(double from, double to, double length_s) {
   LightRange range = range_near_line(from, to, length_s);
@@ -122,14 +128,33 @@ void Illumination::find_unoccluded_lights(std::span<const LitPoint> points,
   }
 }
 
+double Illumination::irradiance_of(std::size_t light, const LitPoint& point) const {
+  return factor(light_flickers_[light], point) * falloff(light, point) *
+         std::max(0.0, path_to(lights_[light], point).irradiance);
+}
+
 double Illumination::irradiance(const LitPoint& point, LightSet lights) const {
   double sum = ambient_ * factor(ambient_flicker_, point);
   if (environment_) sum += environment_->radiance(point.shading_normal);
   for (std::size_t index = 0; index < lights_.size(); ++index)
-    if ((lights >> index & 1) != 0)
-      sum += factor(light_flickers_[index], point) * falloff(index, point) *
-             std::max(0.0, path_to(lights_[index], point).irradiance);
+    if ((lights >> index & 1) != 0) sum += irradiance_of(index, point);
   return sum;
+}
+
+LightRange Illumination::irradiance_range_of(std::size_t light, const LitPoint& from,
+                                             const Eigen::Vector3d& middle, const LitPoint& to,
+                                             const VectorRange* normal) const {
+  const double length_s = to.time_s - from.time_s;
+  const LightOptions& options = lights_[light];
+  LightRange steady =
+      normal != nullptr
+          ? positive_part(dot(*normal, range_near_line(flux_of(options, from.position),
+                                                       flux_of(options, to.position), length_s)))
+          : near_line(std::max(0.0, path_to(options, from).irradiance),
+                      std::max(0.0, path_to(options, to).irradiance), length_s);
+  if (const auto& cone = cones_[light])
+    steady = steady.times(cone->falloff_range(from.position, middle, to.position, length_s));
+  return steady.times(factor_range(light_flickers_[light], from.time_s, to.time_s));
 }
 
 LightRange Illumination::irradiance_range(const LitPoint& from, const Eigen::Vector3d& middle,
@@ -142,20 +167,47 @@ LightRange Illumination::irradiance_range(const LitPoint& from, const Eigen::Vec
     sum.add(normal != nullptr ? environment_->range(*normal)
                               : near_line(environment_->radiance(from.shading_normal),
                                           environment_->radiance(to.shading_normal), length_s));
+  for (std::size_t index = 0; index < lights_.size(); ++index)
+    if ((lights >> index & 1) != 0) sum.add(irradiance_range_of(index, from, middle, to, normal));
+  return sum;
+}
+
+double Illumination::mirrored(const GlossyPoint& seen, const Gloss& gloss, LightSet lights) const {
+  const LitPoint& point = seen.point;
+  const Eigen::Vector3d to_eye = (seen.eye - point.position).normalized();
+  double sum = 0;
   for (std::size_t index = 0; index < lights_.size(); ++index) {
     if ((lights >> index & 1) == 0) continue;
-    const LightOptions& light = lights_[index];
-    LightRange steady =
-        normal != nullptr
-            ? positive_part(dot(*normal, range_near_line(flux_of(light, from.position),
-                                                         flux_of(light, to.position), length_s)))
-            : near_line(std::max(0.0, path_to(light, from).irradiance),
-                        std::max(0.0, path_to(light, to).irradiance), length_s);
-    if (const auto& cone = cones_[index])
-      steady = steady.times(cone->falloff_range(from.position, middle, to.position, length_s));
-    sum.add(steady.times(factor_range(light_flickers_[index], from.time_s, to.time_s)));
+    const Eigen::Vector3d half = (to_eye + to_light(lights_[index], point.position)).normalized();
+    sum += gloss.factor(std::min(point.shading_normal.cross(half).squaredNorm(), 1.0)) *
+           irradiance_of(index, point);
   }
   return sum;
+}
+
+LightRange Illumination::mirrored_range(const GlossyPoint& from, const Eigen::Vector3d& middle,
+                                        const GlossyPoint& to, const Gloss& gloss, LightSet lights,
+                                        const VectorRange* normal) const {
+  const double length_s = to.point.time_s - from.point.time_s;
+  const auto to_eye = [](const GlossyPoint& seen) {
+    return Eigen::Vector3d((seen.eye - seen.point.position).normalized());
+  };
+  const VectorRange eye = range_near_line(to_eye(from), to_eye(to), length_s);
+  const VectorRange normals =
+      normal != nullptr
+          ? *normal
+          : range_near_line(from.point.shading_normal, to.point.shading_normal, length_s);
+  LightRange total{0, 0, 0, 0};
+  for (std::size_t index = 0; index < lights_.size(); ++index) {
+    if ((lights >> index & 1) == 0) continue;
+    const VectorRange light =
+        range_near_line(to_light(lights_[index], from.point.position),
+                        to_light(lights_[index], to.point.position), length_s);
+    const LightRange sine_squared = squared_norm(cross(normals, unit(sum(eye, light))));
+    total.add(gloss.factor_range(sine_squared)
+                  .times(irradiance_range_of(index, from.point, middle, to.point, normal)));
+  }
+  return total;
 }
 
 }  // namespace saccade

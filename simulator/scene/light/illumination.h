@@ -10,6 +10,7 @@
 #include "simulator/scene/intersection/visibility.h"
 #include "simulator/scene/light/environment_light.h"
 #include "simulator/scene/light/flicker.h"
+#include "simulator/scene/light/gloss.h"
 #include "simulator/scene/light/light_options.h"
 #include "simulator/scene/light/spot_cone.h"
 #include "simulator/scene/light/vector_range.h"
@@ -26,8 +27,13 @@ struct LitPoint {
   bool has_normal_map = false;  ///< which the shading normal follows
 };
 
-/// What falls onto a Lambertian surface: ambient light, the light of surroundings, and lights with
-/// shadows.
+/// A point of a glossy surface, as an eye sees it.
+struct GlossyPoint {
+  LitPoint point;
+  Eigen::Vector3d eye;
+};
+
+/// What falls onto a surface: ambient light, the light of surroundings, and lights with shadows.
 class Illumination {
  public:
   /// `shadow_offset`: how far shadow rays start above their surface [m].
@@ -56,6 +62,16 @@ class Illumination {
                                             const LitPoint& to, LightSet lights,
                                             const VectorRange* normal = nullptr) const;
 
+  /// What a glossy surface mirrors of `lights` towards the eye: Gloss::factor() times what each light
+  /// adds to irradiance(). Ambient light and surroundings are not mirrored.
+  [[nodiscard]] double mirrored(const GlossyPoint& seen, const Gloss& gloss, LightSet lights) const;
+  /// Its bounds, as irradiance_range(): the directions to the eye and to the lights are taken to stay
+  /// near the line between both ends'.
+  [[nodiscard]] LightRange mirrored_range(const GlossyPoint& from, const Eigen::Vector3d& middle,
+                                          const GlossyPoint& to, const Gloss& gloss,
+                                          LightSet lights,
+                                          const VectorRange* normal = nullptr) const;
+
   /// All that there are, each once.
   [[nodiscard]] std::span<const Flicker> flickers() const { return flickers_; }
 
@@ -81,6 +97,11 @@ class Illumination {
   /// Of a flicker by its index, or 1.
   [[nodiscard]] double factor(std::size_t flicker, const LitPoint& point) const;
   [[nodiscard]] LightRange factor_range(std::size_t flicker, double from_s, double to_s) const;
+  /// What one light adds to irradiance(), and the bounds of that.
+  [[nodiscard]] double irradiance_of(std::size_t light, const LitPoint& point) const;
+  [[nodiscard]] LightRange irradiance_range_of(std::size_t light, const LitPoint& from,
+                                               const Eigen::Vector3d& middle, const LitPoint& to,
+                                               const VectorRange* normal) const;
   /// Of a light's intensity at a point what its cone leaves.
   [[nodiscard]] double falloff(std::size_t light, const LitPoint& point) const {
     return cones_[light] ? cones_[light]->falloff(point.position) : 1;

@@ -64,11 +64,31 @@ LightRange dot(const VectorRange& a, const VectorRange& b) {
   return sum;
 }
 
-VectorRange unit(const VectorRange& vector) {
-  constexpr double kLeast = 1e-6;
+VectorRange cross(const VectorRange& a, const VectorRange& b) {
+  const auto part = [&](std::size_t i, std::size_t k) {
+    const LightRange negative = product(a[k], b[i]);
+    LightRange difference = product(a[i], b[k]);
+    difference.add({-negative.high, -negative.low, -negative.rate_high, -negative.rate_low});
+    return difference;
+  };
+  return {part(1, 2), part(2, 0), part(0, 1)};
+}
+
+VectorRange sum(VectorRange a, const VectorRange& b) {
+  for (std::size_t k = 0; k < a.size(); ++k) a[k].add(b[k]);
+  return a;
+}
+
+LightRange squared_norm(const VectorRange& vector) {
   LightRange squared = square(vector[0]);
   squared.add(square(vector[1]));
   squared.add(square(vector[2]));
+  return squared;
+}
+
+VectorRange unit(const VectorRange& vector) {
+  constexpr double kLeast = 1e-6;
+  const LightRange squared = squared_norm(vector);
   if (!(squared.low > kLeast)) {
     const LightRange any{-1, 1, -kUnboundedRate, kUnboundedRate};
     return {any, any, any};

@@ -22,6 +22,9 @@ using VectorRange = std::array<LightRange, 3>;
 /// Of max(0, a).
 [[nodiscard]] LightRange positive_part(LightRange a);
 [[nodiscard]] LightRange dot(const VectorRange& a, const VectorRange& b);
+[[nodiscard]] VectorRange cross(const VectorRange& a, const VectorRange& b);
+[[nodiscard]] VectorRange sum(VectorRange a, const VectorRange& b);
+[[nodiscard]] LightRange squared_norm(const VectorRange& vector);
 /// Of a vector divided by its length.
 [[nodiscard]] VectorRange unit(const VectorRange& vector);
 

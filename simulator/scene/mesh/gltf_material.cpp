@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <span>
 #include <utility>
 
 #include "core/error.h"
@@ -328,15 +330,57 @@ ImportedMaterial GltfMaterials::read(const json& material) {
   }
   add_emission(material, base, result);
   add_normal_map(material, result);
+  if (takes_gloss()) result.material.gloss = gloss_of(material, base);
   return result;
+}
+
+bool GltfMaterials::takes_gloss() const {
+  return context_.options.is_lit && context_.options.takes_gloss;
+}
+
+/// A metal mirrors its base colour, anything else 4 % of all colours. Of pictures the mean counts.
+Gloss GltfMaterials::gloss_of(const json& material, const Base& base) {
+  constexpr double kDielectric = 0.04;
+  const json& surface = member(material, "pbrMetallicRoughness");
+  if (!surface.is_object()) return {};
+  auto roughness = static_cast<double>(number(member(surface, "roughnessFactor"), 1));
+  auto metalness = static_cast<double>(number(member(surface, "metallicFactor"), 1));
+  if (const auto use = texture_use(member(surface, "metallicRoughnessTexture"))) {
+    const std::array<double, 3> codes = mean_codes(*use);
+    roughness *= codes[1];
+    metalness *= codes[2];
+  }
+  const double metal = std::clamp(grey_of(base.colour, context_.options.channel), 0.0, 1.0);
+  return make_gloss(std::lerp(kDielectric, metal, std::clamp(metalness, 0.0, 1.0)), roughness);
+}
+
+const std::array<double, 3>& GltfMaterials::mean_codes(const TextureUse& use) {
+  const auto [known, is_new] = mean_codes_.try_emplace(use.texture, std::array{1.0, 1.0, 1.0});
+  if (!is_new) return known->second;
+  const auto decode = [&] {
+    const GltfFile::NamedBytes image = file_.image(image_of(use.texture));
+    return std::make_shared<const NormalTexture>(  // numbers, as of a normal map
+        decode_normal_map(image.bytes, image.name, use.wrap));
+  };
+  const auto map = load_or(context_.options.missing_texture, context_.remarks,
+                           "the factors of roughness and metalness count without it", decode);
+  for (std::size_t k = 0; map && k < known->second.size(); ++k) {
+    const std::span<const float> values = map->part(k).image().pixels();
+    const double sum = std::accumulate(values.begin(), values.end(), 0.0);
+    known->second[k] = 0.5 * (sum / static_cast<double>(values.size()) + 1);
+  }
+  return known->second;
 }
 
 void GltfMaterials::remark_ignored(const json& material) const {
   if (!material.is_object()) return;
   const json& surface = member(material, "pbrMetallicRoughness");
   if (member(material, "occlusionTexture").is_object()) ignore("occlusion maps");
-  if (member(surface, "metallicRoughnessTexture").is_object() ||
-      (surface.is_object() && number(member(surface, "metallicFactor"), 1) > 0))
+  const bool has_picture = member(surface, "metallicRoughnessTexture").is_object();
+  if (takes_gloss() && has_picture)
+    ignore("pictures of roughness and metalness (their mean counts)");
+  else if (!takes_gloss() && (has_picture || (surface.is_object() &&
+                                              number(member(surface, "metallicFactor"), 1) > 0)))
     ignore("metallic reflection");
   for (const auto& [name, content] : member(material, "extensions").items()) {
     if (name == "KHR_materials_unlit") {

@@ -54,6 +54,10 @@ class GltfMaterials {
   /// Under lights: emission counts as light that falls on the surface.
   void add_self_light(const Base& base, const std::optional<TextureUse>& use,
                       ImportedMaterial& result) const;
+  [[nodiscard]] bool takes_gloss() const;
+  [[nodiscard]] Gloss gloss_of(const nlohmann::json& material, const Base& base);
+  /// Of the colours of a picture, as numbers from 0 to 1.
+  [[nodiscard]] const std::array<double, 3>& mean_codes(const TextureUse& use);
   static void take_coordinates(const TextureUse& use, ImportedMaterial& material);
   void remark_ignored(const nlohmann::json& material) const;
   void ignore(const std::string& feature) const;
@@ -63,6 +67,7 @@ class GltfMaterials {
   /// By what they are made of: many materials share one.
   std::map<std::string, TexturePair> textures_;
   std::map<std::string, std::shared_ptr<const NormalTexture>> normal_maps_;
+  std::map<std::size_t, std::array<double, 3>> mean_codes_;  ///< by texture
 };
 
 }  // namespace saccade

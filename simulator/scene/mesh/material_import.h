@@ -21,6 +21,7 @@ struct MeshImportOptions {
   ColourChannel channel = ColourChannel::kLuminance;  ///< what becomes of colours
   bool takes_lights = false;                          ///< of glTF files
   bool takes_normal_maps = true;                      ///< where lights are
+  bool takes_gloss = false;                           ///< of glTF files, where lights are
 };
 
 /// Where a file's materials and textures come from.

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "simulator/scene/animation/mesh_animation.h"
+#include "simulator/scene/light/gloss.h"
 #include "simulator/scene/light/light_options.h"
 #include "simulator/scene/texture/normal_texture.h"
 #include "simulator/scene/texture/texture.h"
@@ -25,6 +26,7 @@ struct Material {
   /// Under lights the radiance is albedo x (irradiance + self_light). Infinite: it is the albedo.
   double self_light = 0;
   std::shared_ptr<const NormalTexture> normal_map = nullptr;  ///< bends the shading normal
+  Gloss gloss{};                                              ///< what it mirrors of lights
 };
 
 struct Triangle {

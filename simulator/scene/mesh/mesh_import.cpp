@@ -315,6 +315,7 @@ Mesh MeshImporter::with_surface(Mesh mesh, const MeshSurface& surface, const std
   for (Material& material : mesh.materials) {
     material.albedo *= surface.reflectance;
     material.factor *= surface.reflectance;
+    if (surface.gloss) material.gloss = *surface.gloss;
   }
   for (double& colour : mesh.colours) colour *= surface.reflectance;
   return mesh;

@@ -23,9 +23,10 @@ struct MeshSurface {
   std::optional<std::filesystem::path> texture;  ///< in place of all colours
   std::optional<std::uint64_t> texture_seed;     ///< of a generated one
   double reflectance = 1;                        ///< multiplies every albedo
+  std::optional<Gloss> gloss;                    ///< in place of those of its materials
 
   /// False: as the file states it.
-  [[nodiscard]] bool is_changed() const { return texture || reflectance != 1; }
+  [[nodiscard]] bool is_changed() const { return texture || reflectance != 1 || gloss; }
 };
 
 /// Reads meshes through assimp, from disk or from within zip archives, with their materials and

@@ -21,31 +21,30 @@ class NormalTexture;
 /// remark.
 enum class MissingTexture { kError, kGrey };
 
-/// load(), or where it throws InputError and textures may be missing, an empty result.
+/// load(), or where it throws InputError and textures may be missing, an empty result and a remark
+/// that ends with what is done `instead`.
 template <class Load>
-auto load_or_grey(MissingTexture missing, SceneRemarks& remarks, const Load& load)
+auto load_or(MissingTexture missing, SceneRemarks& remarks, const char* instead, const Load& load)
     -> decltype(load()) {
   if (missing == MissingTexture::kError) return load();
   try {
     return load();
   } catch (const InputError& error) {
-    remarks.say(std::string(error.what()) + "; grey 0.5 is shown instead");
+    remarks.say(std::string(error.what()) + "; " + instead);
     return {};
   }
 }
 
-/// load(), or where it throws InputError and textures may be missing, null and a remark: surfaces
-/// stay without their normal map.
+/// The same for colours.
 template <class Load>
-auto load_or_flat(MissingTexture missing, SceneRemarks& remarks, const Load& load)
-    -> decltype(load()) {
-  if (missing == MissingTexture::kError) return load();
-  try {
-    return load();
-  } catch (const InputError& error) {
-    remarks.say(std::string(error.what()) + "; the surface is shown without its normal map");
-    return nullptr;
-  }
+auto load_or_grey(MissingTexture missing, SceneRemarks& remarks, const Load& load) {
+  return load_or(missing, remarks, "grey 0.5 is shown instead", load);
+}
+
+/// The same for normal maps.
+template <class Load>
+auto load_or_flat(MissingTexture missing, SceneRemarks& remarks, const Load& load) {
+  return load_or(missing, remarks, "the surface is shown without its normal map", load);
 }
 
 /// The two textures of a picture; `opacity` is null where everything is opaque, `grey` where the

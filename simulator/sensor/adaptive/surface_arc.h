@@ -10,7 +10,7 @@ namespace saccade {
 /// What a ray sees of one triangle, under the same lights, from one instant to a later one: the
 /// parabolas in time through three samples, with u = 0..1 from the first to the last
 ///   v(u) = v0 + u (4 vm - 3 v0 - v1) + 2 u^2 (v0 - 2 vm + v1)
-/// of the texel, the pyramid's level and the irradiance. They are many times cheaper than the
+/// of the texel, the pyramid's level, the irradiance and what is mirrored. They are many times cheaper than the
 /// triangle, the pose and the lights.
 class SurfaceArc {
  public:
@@ -23,6 +23,7 @@ class SurfaceArc {
         x_(from.x, middle.x, to.x),
         y_(from.y, middle.y, to.y),
         light_(light_of(from), light_of(middle), light_of(to)),
+        mirrored_(from.mirrored, middle.mirrored, to.mirrored),
         level_(from.level, middle.level, to.level) {
     const double bend = std::max(std::abs(x_.c), std::abs(y_.c));
     const double way = std::max(std::abs(x_.b + x_.c), std::abs(y_.b + y_.c));
@@ -38,10 +39,11 @@ class SurfaceArc {
   [[nodiscard]] double radiance_at(double t_s) const {
     const double u = (t_s - from_s_) * per_s_;
     const double x = x_.at(u);
-    if (texture_ == nullptr) return light_.at(u) * x;
+    if (texture_ == nullptr) return light_.at(u) * x + mirrored_.at(u);
     const double level = level_.at(u);
-    return light_.at(u) *
-           (level > 0 ? texture_->at_texel(x, y_.at(u), level) : texture_->at_texel(x, y_.at(u)));
+    return light_.at(u) * (level > 0 ? texture_->at_texel(x, y_.at(u), level)
+                                     : texture_->at_texel(x, y_.at(u))) +
+           mirrored_.at(u);
   }
   /// When the ray first comes to other texels after `t_s`, or `end_s` where that is earlier: until
   /// then the texture is bilinear along its way.
@@ -132,7 +134,7 @@ class SurfaceArc {
   double per_s_ = 0;
   bool is_smooth_ = true;
   const Texture* texture_ = nullptr;
-  Parabola x_, y_, light_, level_;
+  Parabola x_, y_, light_, mirrored_, level_;
 };
 
 }  // namespace saccade

@@ -17,6 +17,7 @@ struct ViewSample {
   double level = 0;                ///< of the texture's pyramid
   double factor = 1;               ///< of the first ray: multiplies the texture
   double irradiance = 1;           ///< where the first ray ends
+  double mirrored = 0;             ///< likewise: radiance that a glossy surface adds
   TriangleId triangle = kNothing;  ///< that the first ray sees
   std::uint64_t triangles = 0;     ///< a hash of those of all rays
   std::uint64_t lights = 0;        ///< a hash of the lights that light all of them

@@ -26,6 +26,7 @@ void add(const SurfaceSample& seen, TriangleId triangle, bool is_first, ViewSamp
   sample.level = seen.level;
   sample.factor = seen.factor;
   sample.irradiance = seen.irradiance;
+  sample.mirrored = seen.mirrored;
   sample.triangle = triangle;
   sample.lights_of_ray = seen.lights;
 }
@@ -129,7 +130,7 @@ SurfaceSample ViewSampler::surface_like(const SampleRequest& request, const View
   const Ray ray{camera.position, camera.rotation * direction, request.t_s};
   SurfaceSample seen = surface(camera, direction, ray, like.triangle);
   seen.lights = like.lights_of_ray;
-  seen.irradiance = scene_.irradiance(ray, like.triangle, seen);
+  scene_.set_light(ray, like.triangle, seen);
   ++statistics_.surface_samples;
   return seen;
 }
@@ -200,8 +201,15 @@ Eigen::Vector3d ViewSampler::point_of(std::size_t pixel, const ViewSample& sampl
 SurfaceArc ViewSampler::arc(std::size_t pixel, const ViewSample& from, const ViewSample& to) {
   const SurfaceSample middle = surface_like({pixel, 0.5 * (from.t_s + to.t_s)}, from);
   const auto end = [&](const ViewSample& seen) {
-    return SurfaceSample{middle.texture,  seen.x,        seen.y,     seen.factor,
-                         seen.irradiance, seen.distance, seen.level, seen.lights_of_ray};
+    return SurfaceSample{.texture = middle.texture,
+                         .x = seen.x,
+                         .y = seen.y,
+                         .factor = seen.factor,
+                         .irradiance = seen.irradiance,
+                         .distance = seen.distance,
+                         .level = seen.level,
+                         .lights = seen.lights_of_ray,
+                         .mirrored = seen.mirrored};
   };
   return {from.t_s, to.t_s, end(from), middle, end(to)};
 }

@@ -71,7 +71,7 @@ RaySample RayTracer::sample(const Eigen::Vector3d& direction, TriangleId triangl
   RaySample sample = sample_unlit(direction, triangle, t_s);
   if (!scene_.is_lit()) return sample;
   sample.surface.lights = lights;
-  sample.surface.irradiance = scene_.irradiance(ray_at(direction, t_s), triangle, sample.surface);
+  scene_.set_light(ray_at(direction, t_s), triangle, sample.surface);
   return sample;
 }
 
@@ -100,14 +100,17 @@ RadianceRange RayTracer::varying_light_range(const Eigen::Vector3d& direction,
     if (!mapped) return {};
   }
   const auto light_of = [&](LightSet lights) {
-    return scene_.irradiance_range(from_ray, from.surface, middle_ray, to_ray, to.surface,
-                                   from.triangle, lights, mapped ? &*mapped : nullptr);
+    return scene_.light_range(from_ray, from.surface, middle_ray, to_ray, to.surface, from.triangle,
+                              lights, mapped ? &*mapped : nullptr);
   };
-  std::optional<LightRange> light = light_of(from.surface.lights);
+  std::optional<SurfaceLightRange> light = light_of(from.surface.lights);
   if (!light) return {};
   // At the edge of a shadow the light is that of one end or the other.
   if (from.surface.lights != to.surface.lights) light->include(*light_of(to.surface.lights));
-  return saccade::radiance_range(from, to, to_s - from_s, &*light);
+  RadianceRange range = saccade::radiance_range(from, to, to_s - from_s, &light->irradiance);
+  const LightRange& mirrored = light->mirrored;
+  range.add({mirrored.low, mirrored.high, mirrored.rate_low, mirrored.rate_high});
+  return range;
 }
 
 RaySample RayTracer::normal_map_sample(const Eigen::Vector3d& direction, const RaySample& seen,
@@ -208,7 +211,7 @@ void RayTracer::illuminate(std::span<const Ray> rays, std::span<RaySample> sampl
     if (const PatchLighting* lighting = lighting_of(samples[k].triangle);
         lighting && surface.distance > 0) {
       surface.lights = lighting->lights_at(rays[k].origin + surface.distance * rays[k].direction);
-      surface.irradiance = scene_.irradiance(rays[k], samples[k].triangle, surface);
+      scene_.set_light(rays[k], samples[k].triangle, surface);
       continue;
     }
     unknown[n] = rays[k];

@@ -128,11 +128,12 @@ class RayTracer {
                                        double t_s);
 
   /// radiance_range() of a ray that sees one triangle from `from_s` to `to_s`, in light that may
-  /// flicker or come from spots, and on normal maps.
+  /// flicker or come from spots, on normal maps, and on glossy surfaces.
   [[nodiscard]] RadianceRange radiance_range(const Eigen::Vector3d& direction,
                                              const RaySample& from, double from_s,
                                              const RaySample& to, double to_s) const {
-    return has_varying_light_ || (has_normal_maps_ && scene_.has_normal_map(from.triangle))
+    return has_varying_light_ || scene_.is_glossy(from.triangle) ||
+                   (has_normal_maps_ && scene_.has_normal_map(from.triangle))
                ? varying_light_range(direction, from, from_s, to, to_s)
                : saccade::radiance_range(from, to, to_s - from_s);
   }

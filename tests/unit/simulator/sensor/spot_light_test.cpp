@@ -113,28 +113,27 @@ TEST(SpotLight, BoundsOfTheIrradianceContainWhatRaysSee) {
         const Ray ray = ray_at(t_s);
         SurfaceSample seen = scene.sample_surface(ray, triangle);
         seen.lights = 1;
-        seen.irradiance = scene.irradiance(ray, triangle, seen);
+        scene.set_light(ray, triangle, seen);
         return seen;
       };
       const double to_s = from_s + kInterval_s;
-      const auto range =
-          scene.irradiance_range(first, seen_at(from_s), ray_at(0.5 * (from_s + to_s)),
-                                 ray_at(to_s), seen_at(to_s), triangle, 1);
+      const auto range = scene.light_range(first, seen_at(from_s), ray_at(0.5 * (from_s + to_s)),
+                                           ray_at(to_s), seen_at(to_s), triangle, 1);
       ASSERT_TRUE(range);
       double last = 0;
       for (int k = 0; k <= kParts; ++k) {
         const double value = seen_at(from_s + kInterval_s * k / kParts).irradiance;
-        ASSERT_LE(range->low, value + kOffLine) << n;
-        ASSERT_GE(range->high, value - kOffLine) << n;
+        ASSERT_LE(range->irradiance.low, value + kOffLine) << n;
+        ASSERT_GE(range->irradiance.high, value - kOffLine) << n;
         const double rate = (value - last) * kParts / kInterval_s;
         if (k > 0) {
-          ASSERT_LE(range->rate_low, rate + kOffLine / kInterval_s) << n;
-          ASSERT_GE(range->rate_high, rate - kOffLine / kInterval_s) << n;
+          ASSERT_LE(range->irradiance.rate_low, rate + kOffLine / kInterval_s) << n;
+          ASSERT_GE(range->irradiance.rate_high, rate - kOffLine / kInterval_s) << n;
         }
         last = value;
       }
       ++all;
-      if (range->rate_low >= -1e-6 || range->rate_high <= 1e-6) ++tight;
+      if (range->irradiance.rate_low >= -1e-6 || range->irradiance.rate_high <= 1e-6) ++tight;
     }
     std::printf("%g to %g degrees: %d of %d intervals are monotone for certain\n", inner, outer,
                 tight, all);
