@@ -14,6 +14,7 @@
 #include "core/error.h"
 #include "core/io/files/json_depth.h"
 #include "simulator/scene/mesh/base64.h"
+#include "simulator/scene/mesh/gltf_instances.h"
 
 namespace saccade {
 namespace {
@@ -28,9 +29,9 @@ constexpr std::size_t kGltfHeader = 12;
 constexpr std::size_t kGltfChunkHeader = 8;
 
 /// Extensions that may be required: what they say is read, or concerns no geometry.
-constexpr std::array kGltfFineWhenRequired{"KHR_texture_transform", "EXT_texture_webp",
-                                           "KHR_texture_basisu",    "MSFT_texture_dds",
-                                           "KHR_mesh_quantization", "KHR_lights_punctual"};
+constexpr std::array kGltfFineWhenRequired{
+    "KHR_texture_transform", "EXT_texture_webp",    "KHR_texture_basisu",     "MSFT_texture_dds",
+    "KHR_mesh_quantization", "KHR_lights_punctual", "EXT_mesh_gpu_instancing"};
 
 std::uint32_t little_endian(const Bytes& bytes, std::size_t at) {
   return bytes[at] | static_cast<std::uint32_t>(bytes[at + 1]) << 8U |
@@ -141,6 +142,9 @@ std::optional<GltfFile> GltfFile::open(const FileSource& source, const fs::path&
             : "";
     if (!version.starts_with("2")) return std::nullopt;
     gltf.check_extensions();
+    expand_gltf_instances({[&](std::size_t index) { return gltf.accessor(index); },
+                           [&](const std::string& problem) { gltf.fail(problem); }},
+                          gltf.document_);
   } catch (const json::exception& error) {
     gltf.fail(error.what());
   }

@@ -404,9 +404,7 @@ void GltfMaterials::remark_ignored(bool is_moving) const {
     for (const json& primitive : member(mesh, "primitives"))
       if (member(primitive, "targets").is_array()) ignore("morph targets");
   for (const json& name : member(document, "extensionsUsed"))
-    if (name == "EXT_mesh_gpu_instancing")
-      ignore(name.get<std::string>());
-    else if (name == "KHR_lights_punctual" && !context_.options.takes_lights)
+    if (name == "KHR_lights_punctual" && !context_.options.takes_lights)
       ignore("KHR_lights_punctual (scene.lights_from_meshes: true takes those)");
 }
 
