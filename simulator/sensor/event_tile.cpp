@@ -56,19 +56,21 @@ class LockstepTile final : public EventTile {
   }
 
   void advance(const TimeSlice& slice, const TileMotion& motion) override {
+    exchange_memory();
     tracer_.set_poses(slice.poses);
     if (predict_visibility(slice.end_s, motion)) {
       advance_to(slice.end_s, motion);
-      return;
+    } else {
+      // Fewer triangles come within reach in half the time.
+      const double middle_s = 0.5 * (t_s_ + slice.end_s);
+      TileMotion half = motion;
+      half.pixels *= 0.5;
+      for (const double end_s : {middle_s, slice.end_s}) {
+        predict_visibility(end_s, half);
+        advance_to(end_s, half);
+      }
     }
-    // Fewer triangles come within reach in half the time.
-    const double middle_s = 0.5 * (t_s_ + slice.end_s);
-    TileMotion half = motion;
-    half.pixels *= 0.5;
-    for (const double end_s : {middle_s, slice.end_s}) {
-      predict_visibility(end_s, half);
-      advance_to(end_s, half);
-    }
+    exchange_memory();
   }
 
   [[nodiscard]] InverseDepthRange inverse_depths() const override { return inverse_depths_; }
@@ -114,6 +116,15 @@ class LockstepTile final : public EventTile {
 
   [[nodiscard]] static const PixelRays* footprints(const TileContext& context) {
     return context.options.texture_filter == TextureFilter::kMipmap ? &context.rays : nullptr;
+  }
+
+  /// What a tile has collected is of no use once it has advanced, but its memory is to the next one
+  /// of the same thread: thousands of tiles would hold hundreds of megabytes.
+  void exchange_memory() {
+    thread_local RayTracer::Memory of_tracer;
+    thread_local VisibilityPredictor::Memory of_predictor;
+    tracer_.swap(of_tracer);
+    predictor_.swap(of_predictor);
   }
 
   /// Finds out what can come into view up to `end_s`: whether that is known.

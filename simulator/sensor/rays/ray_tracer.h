@@ -41,8 +41,6 @@ struct VisibleTriangle {
 /// does.
 class RayTracer {
  public:
-  /// Rays that are traced together at most.
-
   /// All outlive the tracer. With `footprints` textures are filtered over the fraction of a pixel
   /// that each of its rays stands for; nullptr: they are seen at points.
   RayTracer(const Scene& scene, EventStatistics& statistics, const PixelRays* footprints = nullptr)
@@ -62,6 +60,26 @@ class RayTracer {
   /// What follows is between `from_s` and `to_s`, within the `outline` of some rays: the lights of
   /// what can be seen there are found once for all of it.
   void set_region(const std::array<Eigen::Vector3d, 4>& outline, double from_s, double to_s);
+
+  /// The lights on what was seen of a triangle.
+  struct KnownLighting {
+    TriangleId triangle;
+    const PatchLighting* whole;  ///< of the whole triangle
+    bool is_known;               ///< if just for what follows
+    PatchLighting patch;
+
+    [[nodiscard]] const PatchLighting* lighting() const {
+      return whole != nullptr ? whole : is_known ? &patch : nullptr;
+    }
+  };
+  using Memory = std::vector<KnownLighting>;
+  /// Exchanges what was found for a region for what another tracer has left; the next call is
+  /// set_region().
+  void swap(Memory& memory) {
+    std::swap(known_, memory);
+    lighting_count_ = 0;
+    candidates_ = {};
+  }
 
   [[nodiscard]] bool is_lit() const { return scene_.is_lit(); }
 
@@ -164,17 +182,6 @@ class RayTracer {
                                double t_s) const;
 
  private:
-  struct KnownLighting {
-    TriangleId triangle;
-    const PatchLighting* whole;  ///< of the whole triangle
-    bool is_known;               ///< if just for what follows
-    PatchLighting patch;
-
-    [[nodiscard]] const PatchLighting* lighting() const {
-      return whole != nullptr ? whole : is_known ? &patch : nullptr;
-    }
-  };
-
   /// With bounds of the irradiance, which need not stay near a line.
   [[nodiscard]] RadianceRange varying_light_range(const Eigen::Vector3d& direction,
                                                   const RaySample& from, double from_s,

@@ -14,10 +14,12 @@ namespace saccade {
 /// TriangleRayBounds; floats in lanes, whose rounding is far below the margin.
 class EdgeCulling {
  public:
-  /// What is nearer to an edge than `margin` of the image plane does not count as outside.
-  explicit EdgeCulling(double margin) : margin_(static_cast<float>(margin)) {}
-
-  void clear() { count_ = 0; }
+  /// Drops all triangles. Of those that follow, what is nearer to an edge than `margin` of the image
+  /// plane does not count as outside.
+  void clear(double margin) {
+    margin_ = static_cast<float>(margin);
+    count_ = 0;
+  }
 
   void add(const TransitTriangle& triangle) {
     if (count_ % kLanes == 0 && count_ / kLanes == blocks_.size()) blocks_.emplace_back();
@@ -91,7 +93,7 @@ class EdgeCulling {
     }
   }
 
-  float margin_;
+  float margin_ = 0;
   std::vector<Block> blocks_;
   std::size_t count_ = 0;
 };

@@ -28,20 +28,21 @@ bool share_edge(const TransitTriangle& a, std::size_t edge_of_a, const TransitTr
 }  // namespace
 
 bool VisibilityPredictor::collect(double farthest_m, double from_s, double to_s) {
-  const bool all = tracer_.collect(outline_, farthest_m, from_s, to_s, kMaxCandidates, candidates_);
+  const bool all =
+      tracer_.collect(outline_, farthest_m, from_s, to_s, kMaxCandidates, memory_.candidates);
   if (!all) clear();
   return all;
 }
 
 void VisibilityPredictor::restrict_to(double from_s, double to_s, std::size_t depth) {
-  transits_.clear();
-  culling_.clear();
+  memory_.transits.clear();
+  memory_.culling.clear(edge_margin_);
   tracer_.set_candidates(std::span<const TriangleId>());
-  if (candidates_.empty()) return;
-  if (candidates_at_depth_.size() <= depth) candidates_at_depth_.resize(depth + 1);
+  if (memory_.candidates.empty()) return;
+  if (memory_.candidates_at_depth.size() <= depth) memory_.candidates_at_depth.resize(depth + 1);
   const std::vector<TriangleId>& before =
-      depth == 0 ? candidates_ : candidates_at_depth_[depth - 1];
-  std::vector<TriangleId>& now = candidates_at_depth_[depth];
+      depth == 0 ? memory_.candidates : memory_.candidates_at_depth[depth - 1];
+  std::vector<TriangleId>& now = memory_.candidates_at_depth[depth];
   now.clear();
   const std::array<double, 3> times_s{from_s, 0.5 * (from_s + to_s), to_s};
   std::array<CameraFrame, 3> cameras;
@@ -52,37 +53,40 @@ void VisibilityPredictor::restrict_to(double from_s, double to_s, std::size_t de
       transit.at[m] =
           scene_.edge_functions(candidate, cameras[m].position, cameras[m].rotation, times_s[m]);
     if (transit.misses(outline_)) continue;
-    transits_.push_back(transit);
-    culling_.add(transit);
+    memory_.transits.push_back(transit);
+    memory_.culling.add(transit);
     now.push_back(candidate);
   }
   tracer_.set_candidates(now);
 }
 
 void VisibilityPredictor::select_rays(std::span<const Eigen::Vector3d> directions) {
-  nearby_.clear();
-  nearby_ids_.clear();
+  memory_.nearby.clear();
+  memory_.nearby_ids.clear();
   for (const Eigen::Vector3d& direction : directions)
-    culling_.visit_candidates(direction, [&](std::size_t k) { nearby_.push_back(k); });
+    memory_.culling.visit_candidates(direction,
+                                     [&](std::size_t k) { memory_.nearby.push_back(k); });
   if (directions.size() > 1) {
-    std::sort(nearby_.begin(), nearby_.end());
-    nearby_.erase(std::unique(nearby_.begin(), nearby_.end()), nearby_.end());
+    std::sort(memory_.nearby.begin(), memory_.nearby.end());
+    memory_.nearby.erase(std::unique(memory_.nearby.begin(), memory_.nearby.end()),
+                         memory_.nearby.end());
   }
-  for (const std::size_t k : nearby_) nearby_ids_.push_back(transits_[k].triangle);
-  tracer_.set_candidates(nearby_ids_);
+  for (const std::size_t k : memory_.nearby)
+    memory_.nearby_ids.push_back(memory_.transits[k].triangle);
+  tracer_.set_candidates(memory_.nearby_ids);
 }
 
 const TransitTriangle* VisibilityPredictor::find_opaque(TriangleId triangle) const {
-  const auto found = std::find_if(transits_.begin(), transits_.end(),
+  const auto found = std::find_if(memory_.transits.begin(), memory_.transits.end(),
                                   [&](const auto& each) { return each.triangle == triangle; });
-  return found == transits_.end() || scene_.is_cut_out(triangle) ? nullptr : &*found;
+  return found == memory_.transits.end() || scene_.is_cut_out(triangle) ? nullptr : &*found;
 }
 
 bool VisibilityPredictor::are_in_front(const Eigen::Vector3d& direction, const TransitTriangle& a,
                                        const TransitTriangle& b) const {
   bool is_certain = true;
-  culling_.visit_candidates(direction, [&](std::size_t k) {
-    const TransitTriangle& other = transits_[k];
+  memory_.culling.visit_candidates(direction, [&](std::size_t k) {
+    const TransitTriangle& other = memory_.transits[k];
     if (!is_certain || &other == &a || &other == &b) return;
     const TriangleRayBounds bounds(other, direction, edge_margin_);
     is_certain =
@@ -129,8 +133,8 @@ void VisibilityPredictor::find_transits(const Eigen::Vector3d& direction,
       is_open ? std::numeric_limits<double>::infinity()
               : std::max(lo.sample.surface.distance, hi.sample.surface.distance);
   const double length_s = hi.t_s - lo.t_s;
-  for (const std::size_t index : nearby_) {
-    const TransitTriangle& transit = transits_[index];
+  for (const std::size_t index : memory_.nearby) {
+    const TransitTriangle& transit = memory_.transits[index];
     const bool at_lo = transit.triangle == lo.sample.triangle;
     const bool at_hi = transit.triangle == hi.sample.triangle;
     if (at_lo && at_hi && transit.leaves(direction)) times_s.push_back(lo.t_s + 0.5 * length_s);
@@ -168,7 +172,7 @@ void VisibilityPredictor::find_visible_times(const Eigen::Vector3d& direction, T
                                              std::vector<double>& times_s) const {
   for (const double fraction : {0.02, 0.5, 0.98}) {
     const double t_s = from_s + fraction * (to_s - from_s);
-    if (tracer_.is_nearest(direction, triangle, nearby_ids_, t_s)) times_s.push_back(t_s);
+    if (tracer_.is_nearest(direction, triangle, memory_.nearby_ids, t_s)) times_s.push_back(t_s);
   }
 }
 
@@ -209,7 +213,7 @@ void VisibilityPredictor::find_shadows_on(const Eigen::Vector3d& direction, Tria
       times_s.push_back(t_s + 0.45 * tolerance_s_);
       before = at;
     };
-    shadows_.find(light, points, [&](double begin, double end) {
+    memory_.shadows.find(light, points, [&](double begin, double end) {
       change(begin);
       change(end);
     });

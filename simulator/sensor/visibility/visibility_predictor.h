@@ -66,20 +66,32 @@ class VisibilityPredictor {
         tracer_(tracer),
         outline_(outline),
         edge_margin_(edge_margin),
-        tolerance_s_(tolerance_s),
-        culling_(edge_margin) {}
+        tolerance_s_(tolerance_s) {}
+
+  /// Everything that was collected: up to ten megabytes of a tile.
+  struct Memory {
+    std::vector<TriangleId> candidates;                        ///< that may come into view
+    std::vector<TransitTriangle> transits;                     ///< of them, in the part of the time
+    EdgeCulling culling;                                       ///< of transits
+    std::vector<std::vector<TriangleId>> candidates_at_depth;  ///< the same, at each depth
+    std::vector<std::size_t> nearby;  ///< of them, candidates that the selected rays can intersect
+    std::vector<TriangleId> nearby_ids;  ///< the same
+    ShadowTransits shadows;
+  };
+  /// Exchanges it for what another predictor has left; the next call is collect() or clear().
+  void swap(Memory& memory) { std::swap(memory_, memory); }
 
   /// Collects the triangles that can become visible between two times nearer than `farthest_m`;
   /// false, and no candidates, where there are too many.
   [[nodiscard]] bool collect(double farthest_m, double from_s, double to_s);
   /// Drops all candidates.
-  void clear() { candidates_.clear(); }
+  void clear() { memory_.candidates.clear(); }
 
   /// Restricts the candidates to those of a part of that time: at `depth` 0 of all of it, else of
   /// the part that was last set at the depth before.
   void restrict_to(double from_s, double to_s, std::size_t depth);
   /// Whether any triangle can be visible in that part.
-  [[nodiscard]] bool has_candidates() const { return !transits_.empty(); }
+  [[nodiscard]] bool has_candidates() const { return !memory_.transits.empty(); }
 
   /// Whether a ray that sees `triangle` at the beginning and the end sees nothing else in between.
   [[nodiscard]] bool stays_visible(const Eigen::Vector3d& direction, TriangleId triangle) const;
@@ -126,13 +138,7 @@ class VisibilityPredictor {
   const std::array<Eigen::Vector3d, 4>& outline_;
   double edge_margin_;
   double tolerance_s_;
-  std::vector<TriangleId> candidates_;                        ///< that may come into view
-  std::vector<TransitTriangle> transits_;                     ///< of them, in the part of the time
-  EdgeCulling culling_;                                       ///< of transits_
-  std::vector<std::vector<TriangleId>> candidates_at_depth_;  ///< the same, at each depth
-  std::vector<std::size_t> nearby_;  ///< of them, candidates that the selected rays can intersect
-  std::vector<TriangleId> nearby_ids_;  ///< the same
-  ShadowTransits shadows_;
+  Memory memory_;
 };
 
 }  // namespace saccade

@@ -52,7 +52,8 @@ TransitTriangle random_triangle(Draws& random) {
 TEST(EdgeCulling, KeepsAllThatMayBeMetAndLittleElse) {
   Draws random(1);
   std::vector<TransitTriangle> triangles;
-  EdgeCulling test(kMargin);
+  EdgeCulling test;
+  test.clear(kMargin);
   for (int i = 0; i < 500; ++i) {
     triangles.push_back(random_triangle(random));
     test.add(triangles.back());
@@ -80,9 +81,10 @@ TEST(EdgeCulling, KeepsAllThatMayBeMetAndLittleElse) {
 
 TEST(EdgeCulling, StartsAfresh) {
   Draws random(2);
-  EdgeCulling test(kMargin);
+  EdgeCulling test;
+  test.clear(kMargin);
   for (int i = 0; i < 40; ++i) test.add(random_triangle(random));
-  test.clear();
+  test.clear(kMargin);
   std::size_t found = 0;
   test.visit_candidates({0, 0, 1}, [&](std::size_t) { ++found; });
   EXPECT_EQ(found, 0U);
