@@ -3,13 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace saccade {
 namespace {
-
-/// Beyond the image the view reaches this much further than it may move before it is redrawn.
-constexpr int kSpareNodes = 4;
 
 /// Standard deviation of a reprojection: the map consists of point samples.
 constexpr float kPositionSigma_px = 0.2F;
@@ -25,20 +21,6 @@ constexpr std::size_t kUpdatePasses = 8;
 
 /// Marks an observation whose pixel is not corrected.
 constexpr std::uint32_t kNotCorrected = std::numeric_limits<std::uint32_t>::max();
-
-/// A view of some 240 columns is fine enough: what lies between its nodes is extrapolated.
-int spacing_of(const PinholeCamera& camera) {
-  constexpr double kColumns = 240;
-  return std::max(1, static_cast<int>(std::lround(camera.width / kColumns)));
-}
-
-double redraw_px(const IntensityOptions& options, const PinholeCamera& camera) {
-  return camera.fx * options.redraw_deg * std::numbers::pi / 180;
-}
-
-int margin_of(const IntensityOptions& options, const PinholeCamera& camera) {
-  return static_cast<int>(std::ceil(redraw_px(options, camera) / spacing_of(camera))) + kSpareNodes;
-}
 
 /// Of a no-event constraint, which is uniform within a threshold.
 float no_event_variance(const EventContrast& contrast) {
@@ -65,18 +47,15 @@ float sharp_fraction(double edge_sharpness) {
 LogIntensityResiduals::LogIntensityResiduals(const IntensityOptions& options,
                                              const PinholeCamera& camera, const IntensityMap& map)
     : options_(options),
-      camera_(camera.undistorted()),
-      undistortion_(camera),
-      map_(map),
-      view_(map, margin_of(options, camera), spacing_of(camera)),
+      view_(options, camera, map),
       pixels_(camera.width, camera.height),
       regions_(camera.width, camera.height) {
   set_contrast(ThresholdEstimator::kExpected);
 }
 
 void LogIntensityResiduals::begin_learning() {
-  thresholds_.emplace(static_cast<std::size_t>(camera_.width) *
-                      static_cast<std::size_t>(camera_.height));
+  thresholds_.emplace(static_cast<std::size_t>(view_.camera().width) *
+                      static_cast<std::size_t>(view_.camera().height));
 }
 
 void LogIntensityResiduals::end_learning() {
@@ -105,30 +84,22 @@ void LogIntensityResiduals::restart(const Rigid3& map_from_camera, float sigma) 
 }
 
 void LogIntensityResiduals::prepare_view(const Rigid3& map_from_camera) {
-  if (view_.moved_px(map_from_camera) >= redraw_px(options_, camera_)) draw_view(map_from_camera);
+  if (view_.is_outdated(map_from_camera)) draw_view(map_from_camera);
 }
 
 void LogIntensityResiduals::draw_view(const Rigid3& map_from_camera) {
   view_.draw(map_from_camera);
-  list_steep_pixels();
+  if (options_.no_event_ratio > 0) steep_pixels_ = view_.steep_pixels(kMinSlope);
   ++views_drawn_;
 }
 
 void LogIntensityResiduals::read_pixels_from_map(float sigma) {
   pixels_.reset();
-  for (int y = 0; y < camera_.height; ++y)
-    for (int x = 0; x < camera_.width; ++x) {
-      const Eigen::Vector2f pixel = undistortion_(x, y);
-      const MapSample* at = sample_at(pixel);
-      if (at == nullptr) continue;
-      const Eigen::Vector2i node = view_.node_at(pixel);
-      const Eigen::Vector2f offset = pixel - (view_.spacing_px() * node).cast<float>();
-      const Eigen::Vector2f atlas_px = at->atlas_px + at->atlas_per_pixel * offset;
-      if (!is_inside(map_.atlas(), atlas_px.x(), atlas_px.y())) continue;
-      const float value = sample(map_.atlas(), atlas_px.x(), atlas_px.y());
-      if (!std::isfinite(value)) continue;
-      pixels_.set(static_cast<std::size_t>(y * camera_.width + x), value, sigma * sigma);
-    }
+  const PinholeCamera& camera = view_.camera();
+  for (int y = 0; y < camera.height; ++y)
+    for (int x = 0; x < camera.width; ++x)
+      if (const auto value = view_.log_intensity(view_.undistorted(x, y)))
+        pixels_.set(static_cast<std::size_t>(y * camera.width + x), *value, sigma * sigma);
 }
 
 void LogIntensityResiduals::load(std::span<const Event> events, TimeNs t_ns, double jump_s,
@@ -148,7 +119,9 @@ void LogIntensityResiduals::load(std::span<const Event> events, TimeNs t_ns, dou
           static_cast<std::size_t>(std::lround(options_.no_event_ratio * pixels)), motion);
       has_constraints = true;
     }
-    prefetch(events[std::min(i + kPixelsAhead, events.size() - 1)]);
+    const Event& later = events[std::min(i + kPixelsAhead, events.size() - 1)];
+    pixels_.prefetch(pixels_.index(later));
+    view_.prefetch(view_.undistorted(later.x, later.y));
     add_to_burst(event, static_cast<float>(seconds_from_ns(event.t_ns - t_ns)));
   }
   for (const Burst& burst : bursts_) add_burst(burst, static_cast<float>(jump_s), motion);
@@ -161,7 +134,7 @@ void LogIntensityResiduals::learn_sensor() {
   const double mismatch =
       options_.mismatch_sigma.value_or(intervals_.has_bursts() ? kIdeal : kReal);
   pixels_.set_event_variance(static_cast<float>(mismatch * mismatch) * threshold_ * threshold_);
-  step_weight_ = sharp_fraction(map_.edge_sharpness()) * intervals_.pile_up();
+  step_weight_ = sharp_fraction(view_.map().edge_sharpness()) * intervals_.pile_up();
 }
 
 void LogIntensityResiduals::add_to_burst(const Event& event, float time_s) {
@@ -192,11 +165,11 @@ void LogIntensityResiduals::add_to_burst(const Event& event, float time_s) {
 void LogIntensityResiduals::add_burst(const Burst& burst, float jump_s,
                                       const EventResidualBatch::Motion& motion) {
   const std::size_t pixel =
-      static_cast<std::size_t>(burst.y) * static_cast<std::size_t>(camera_.width) + burst.x;
+      static_cast<std::size_t>(burst.y) * static_cast<std::size_t>(view_.camera().width) + burst.x;
   pixels_.set_slot(pixel, PixelLogIntensity::kNoSlot);
   const auto count = static_cast<float>(burst.events);
   LogIntensityObservation observation;
-  observation.pixel = undistortion_(burst.x, burst.y);
+  observation.pixel = view_.undistorted(burst.x, burst.y);
   observation.time_s = burst.sum_s / count;
   observation.variance = pixels_.variance(pixel);
   // A jump passes all its levels at once: what is known is the middle between what the pixel saw
@@ -204,7 +177,7 @@ void LogIntensityResiduals::add_burst(const Burst& burst, float jump_s,
   const bool is_jump = burst.events > 1 && burst.last_s - burst.first_s < jump_s;
   observation.log_intensity =
       is_jump ? 0.5F * (burst.before + pixels_.between_events(pixel)) : burst.sum / count;
-  const MapSample* at = find_sample(observation.pixel, observation.time_s, motion);
+  const MapSample* at = view_.find_sample(observation.pixel, observation.time_s, motion);
   if (at == nullptr) return;
   const bool is_step = observe_step(burst.polarity, pixel, *at, motion, observation);
   if (thresholds_ && (is_step || is_jump)) thresholds_->forget(pixel);
@@ -215,10 +188,9 @@ bool LogIntensityResiduals::observe_step(int polarity, std::size_t pixel, const 
                                          const EventResidualBatch::Motion& motion,
                                          LogIntensityObservation& observation) {
   if (!(step_weight_ > 0)) return false;
-  const std::optional<Eigen::Vector2i> texel = texel_of(observation, at, motion);
-  if (!texel) return false;
-  const float least = map_.least()(texel->x(), texel->y());
-  const float greatest = map_.greatest()(texel->x(), texel->y());
+  const std::optional<MapLevels> levels = view_.levels(observation, at, motion);
+  if (!levels) return false;
+  const auto [least, greatest] = *levels;
   const float range = greatest - least;
   // An edge of two thresholds may yield a single event anyway; one of four would yield several.
   constexpr float kSmallest = 2, kCertain = 4;
@@ -237,30 +209,6 @@ bool LogIntensityResiduals::observe_step(int polarity, std::size_t pixel, const 
   return true;
 }
 
-std::optional<Eigen::Vector2i> LogIntensityResiduals::texel_of(
-    const LogIntensityObservation& observation, const MapSample& at,
-    const EventResidualBatch::Motion& motion) const {
-  const Eigen::Vector2f atlas_px =
-      at.atlas_px +
-      at.atlas_per_pixel * (observation.pixel - project(at.point, observation.time_s, motion));
-  const Eigen::Vector2f nearest = atlas_px.array().round();
-  const ImageF& atlas = map_.atlas();
-  if (!(nearest.x() >= 0 && nearest.y() >= 0 && nearest.x() < static_cast<float>(atlas.width()) &&
-        nearest.y() < static_cast<float>(atlas.height())))
-    return std::nullopt;
-  return nearest.cast<int>();
-}
-
-Eigen::Vector2f LogIntensityResiduals::project(const Eigen::Vector3f& point, float time_s,
-                                               const EventResidualBatch::Motion& motion) const {
-  const Eigen::Vector3f at = motion.rotation * point + motion.translation;
-  const Eigen::Vector3f v = motion.velocity.head<3>();
-  const Eigen::Vector3f w = motion.velocity.tail<3>();
-  const Eigen::Vector3f moved = at - time_s * (v + w.cross(at));
-  return {static_cast<float>(camera_.fx) * moved.x() / moved.z() + static_cast<float>(camera_.cx),
-          static_cast<float>(camera_.fy) * moved.y() / moved.z() + static_cast<float>(camera_.cy)};
-}
-
 void LogIntensityResiduals::load_no_event_constraints(std::size_t count,
                                                       const EventResidualBatch::Motion& motion) {
   if (count == 0) return;
@@ -271,7 +219,7 @@ void LogIntensityResiduals::load_no_event_constraints(std::size_t count,
   for (std::size_t i = first_steep_pixel_; i < steep_pixels_.size(); i += every) {
     const std::size_t pixel = steep_pixels_[i];
     const LogIntensityObservation observation = no_event_constraint(pixel);
-    const MapSample* at = find_sample(observation.pixel, 0, motion);
+    const MapSample* at = view_.find_sample(observation.pixel, 0, motion);
     if (at != nullptr &&
         (!pixels_.has_fired(pixel) || is_known_within_threshold(observation, *at, motion)))
       add(observation, *at, kNotCorrected);
@@ -279,8 +227,8 @@ void LogIntensityResiduals::load_no_event_constraints(std::size_t count,
 }
 
 LogIntensityObservation LogIntensityResiduals::no_event_constraint(std::size_t pixel) const {
-  const int x = static_cast<int>(pixel % static_cast<std::size_t>(camera_.width));
-  const int y = static_cast<int>(pixel / static_cast<std::size_t>(camera_.width));
+  const int x = static_cast<int>(pixel % static_cast<std::size_t>(view_.camera().width));
+  const int y = static_cast<int>(pixel / static_cast<std::size_t>(view_.camera().width));
   const float variance = pixels_.variance(pixel);
   // The middle of the interval of a pixel that has not fired since it was read from the map is what it
   // saw then: as a measurement that would hold the camera back. All that is known is that the pixel is
@@ -288,11 +236,11 @@ LogIntensityObservation LogIntensityResiduals::no_event_constraint(std::size_t p
   // with 0.3 thresholds 70; with 0.8 the errors of 71 worlds of four rays grow by 4 %.
   constexpr float kDeadZoneThresholds = 0.5F;
   if (!pixels_.has_fired(pixel))
-    return {undistortion_(x, y), 0, pixels_.at_last_event(pixel), variance,
+    return {view_.undistorted(x, y), 0, pixels_.at_last_event(pixel), variance,
             kDeadZoneThresholds * threshold_};
   const float value =
       options_.half_threshold ? pixels_.between_events(pixel) : pixels_.at_last_event(pixel);
-  return {undistortion_(x, y), 0, value, variance + no_event_variance_};
+  return {view_.undistorted(x, y), 0, value, variance + no_event_variance_};
 }
 
 bool LogIntensityResiduals::is_known_within_threshold(
@@ -300,28 +248,8 @@ bool LogIntensityResiduals::is_known_within_threshold(
     const EventResidualBatch::Motion& motion) const {
   if (intervals_.has_bursts()) return true;
   constexpr float kThresholds = 4;
-  const std::optional<Eigen::Vector2i> texel = texel_of(observation, at, motion);
-  return texel && map_.greatest()(texel->x(), texel->y()) - map_.least()(texel->x(), texel->y()) <
-                      kThresholds * threshold_;
-}
-
-void LogIntensityResiduals::list_steep_pixels() {
-  steep_pixels_.clear();
-  if (!(options_.no_event_ratio > 0)) return;
-  const ImageF& atlas = map_.atlas();
-  const int spacing = view_.spacing_px();
-  for (int y = 0; y < camera_.height; y += spacing)
-    for (int x = 0; x < camera_.width; x += spacing) {
-      const MapSample* at = sample_at(undistortion_(x, y));
-      if (at == nullptr) continue;
-      const int u = static_cast<int>(at->atlas_px.x());
-      const int v = static_cast<int>(at->atlas_px.y());
-      if (u < 0 || v < 0 || u + 1 >= atlas.width() || v + 1 >= atlas.height()) continue;
-      const Eigen::Vector2f slope(atlas(u + 1, v) - atlas(u, v), atlas(u, v + 1) - atlas(u, v));
-      // Not so where it is unknown.
-      if ((at->atlas_per_pixel.transpose() * slope).squaredNorm() >= kMinSlope * kMinSlope)
-        steep_pixels_.push_back(static_cast<std::uint32_t>(y * camera_.width + x));
-    }
+  const std::optional<MapLevels> levels = view_.levels(observation, at, motion);
+  return levels && levels->greatest - levels->least < kThresholds * threshold_;
 }
 
 void LogIntensityResiduals::add(LogIntensityObservation observation, const MapSample& at,
@@ -337,32 +265,10 @@ void LogIntensityResiduals::add(LogIntensityObservation observation, const MapSa
   batches_[batch_count_ - 1].add(observation, at);
 }
 
-void LogIntensityResiduals::prefetch(const Event& event) const {
-  pixels_.prefetch(pixels_.index(event));
-  const Eigen::Vector2i node = view_.node_at(undistortion_(event.x, event.y));
-  if (view_.contains(node.x(), node.y())) __builtin_prefetch(&view_(node.x(), node.y()));
-}
-
-const MapSample* LogIntensityResiduals::sample_at(const Eigen::Vector2f& pixel) const {
-  const Eigen::Vector2i node = view_.node_at(pixel);
-  if (!view_.contains(node.x(), node.y())) return nullptr;
-  const MapSample& at = view_(node.x(), node.y());
-  return at.inverse_depth > 0 ? &at : nullptr;
-}
-
-const MapSample* LogIntensityResiduals::find_sample(
-    const Eigen::Vector2f& pixel, float time_s, const EventResidualBatch::Motion& motion) const {
-  // What is visible there now was elsewhere in the view that was drawn: one step of a fixed point.
-  const MapSample* here = sample_at(pixel);
-  if (here == nullptr) return nullptr;
-  const Eigen::Vector2f before = pixel + (pixel - project(here->point, time_s, motion));
-  return before.allFinite() ? sample_at(before) : nullptr;
-}
-
 EventResidualBatch::Sums LogIntensityResiduals::evaluate(const EventResidualBatch::Motion& motion) {
   EventResidualBatch::Sums sums;
   for (std::size_t k = 0; k < batch_count_; ++k) {
-    batches_[k].evaluate(camera_, map_.atlas(), map_.variance(), motion);
+    batches_[k].evaluate(view_.camera(), view_.map().atlas(), view_.map().variance(), motion);
     batches_[k].weigh({static_cast<float>(kSigma), kPositionSigma_px});
     batches_[k].add_to(sums);
   }
@@ -401,15 +307,15 @@ void LogIntensityResiduals::update_pixels_without_events(const EventResidualBatc
   loaded_pixels_.clear();
   loaded_regions_.clear();
   first_updated_pixel_ = (first_updated_pixel_ + 1) % kUpdatePasses;
-  const std::size_t count =
-      static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);
+  const std::size_t count = static_cast<std::size_t>(view_.camera().width) *
+                            static_cast<std::size_t>(view_.camera().height);
   for (std::size_t i = first_updated_pixel_; i < count; i += kUpdatePasses) {
     if (!(pixels_.variance(i) > noise)) continue;
-    const int x = static_cast<int>(i % static_cast<std::size_t>(camera_.width));
-    const int y = static_cast<int>(i / static_cast<std::size_t>(camera_.width));
-    const LogIntensityObservation observation{undistortion_(x, y), 0, pixels_.between_events(i),
+    const int x = static_cast<int>(i % static_cast<std::size_t>(view_.camera().width));
+    const int y = static_cast<int>(i / static_cast<std::size_t>(view_.camera().width));
+    const LogIntensityObservation observation{view_.undistorted(x, y), 0, pixels_.between_events(i),
                                               pixels_.variance(i)};
-    if (const MapSample* at = find_sample(observation.pixel, 0, motion))
+    if (const MapSample* at = view_.find_sample(observation.pixel, 0, motion))
       add(observation, *at, static_cast<std::uint32_t>(i));
   }
   static_cast<void>(evaluate(motion));

@@ -11,11 +11,11 @@
 #include "estimator/tracking/intensity/event_intervals.h"
 #include "estimator/tracking/intensity/event_residual_batch.h"
 #include "estimator/tracking/intensity/intensity_options.h"
+#include "estimator/tracking/intensity/map_reprojection.h"
 #include "estimator/tracking/intensity/pixel_log_intensity.h"
 #include "estimator/tracking/intensity/region_weights.h"
 #include "estimator/tracking/intensity/threshold_estimator.h"
 #include "estimator/tracking/intensity_map.h"
-#include "estimator/tracking/map_view.h"
 
 namespace saccade {
 
@@ -27,7 +27,7 @@ namespace saccade {
 /// An event says less where an edge passes too fast. Several events of a pixel at once say only that
 /// it jumped from one level to another, and that the middle between both is there. Where pixels are
 /// blind for a while after an event (EventIntervals) a single event may be all that a jump leaves:
-/// then the map tells both levels. Holds the pixels' state and the view of the map.
+/// then the map tells both levels. Holds the pixels' state and what they see of the map.
 class LogIntensityResiduals {
  public:
   /// sigma of an observation [log units]: texture between the map's point samples, noise.
@@ -77,7 +77,6 @@ class LogIntensityResiduals {
 
  private:
   void draw_view(const Rigid3& map_from_camera);
-  void list_steep_pixels();
   void read_pixels_from_map(float sigma);
   /// The events of one pixel in a batch: one observation.
   struct Burst {
@@ -108,13 +107,6 @@ class LogIntensityResiduals {
   [[nodiscard]] double blind_s() const {
     return intervals_.pile_up() > 0 ? intervals_.shortest_s() : 0;
   }
-  /// Where a point of the map is at a time.
-  [[nodiscard]] Eigen::Vector2f project(const Eigen::Vector3f& point, float time_s,
-                                        const EventResidualBatch::Motion& motion) const;
-  /// The map's pixel nearest to an observation's reprojection, if there is one.
-  [[nodiscard]] std::optional<Eigen::Vector2i> texel_of(
-      const LogIntensityObservation& observation, const MapSample& at,
-      const EventResidualBatch::Motion& motion) const;
   /// Calls use(pixel, residual, batch, index in it) for all loaded pixels that are to be corrected.
   template <class Use>
   void for_each_measured_pixel(const Use& use);
@@ -123,18 +115,9 @@ class LogIntensityResiduals {
   /// `pixel`: the one that correct() will correct.
   void add(LogIntensityObservation observation, const MapSample& at, std::uint32_t pixel);
   void learn_regions();
-  void prefetch(const Event& event) const;
-  /// The map's sample at a node of the view; nullptr where it is not visible.
-  [[nodiscard]] const MapSample* sample_at(const Eigen::Vector2f& pixel) const;
-  /// The map's sample under a pixel at a time; nullptr where it is not visible.
-  [[nodiscard]] const MapSample* find_sample(const Eigen::Vector2f& pixel, float time_s,
-                                             const EventResidualBatch::Motion& motion) const;
 
   IntensityOptions options_;
-  PinholeCamera camera_;  ///< undistorted
-  UndistortionTable undistortion_;
-  const IntensityMap& map_;
-  MapView view_;
+  MapReprojection view_;
   EventContrast contrast_;
   std::optional<ThresholdEstimator> thresholds_;  ///< while they are learned
   PixelLogIntensity pixels_;
