@@ -181,17 +181,17 @@ class Scene {
                                                  const Eigen::Vector3d& position,
                                                  const Eigen::Matrix3d& world_from_camera) const;
   /// Finds the lights that nothing hides from the points of at most 16 samples along `rays` at
-  /// `triangles` (spots whether or not a point is in their cone), the irradiance (1 in an unlit scene
-  /// and for the background) and what is mirrored.
+  /// `triangles` (spots whether or not a point is in their cone), the irradiance (1 in an unlit
+  /// scene and for the background) and what is mirrored.
   void illuminate(std::span<const Ray> rays, std::span<const TriangleId> triangles,
                   std::span<SurfaceSample> samples) const;
-  /// The lights alone, of at most 16 samples of triangles: those that `known`, one per sample, leaves
-  /// open are looked for.
+  /// The lights alone, of at most 16 samples of triangles: those that `known`, one per sample,
+  /// leaves open are looked for.
   void find_lights(std::span<const Ray> rays, std::span<const TriangleId> triangles,
                    std::span<const SurfaceSample> samples, std::span<const KnownLights> known,
                    std::span<LightSet> lights) const;
-  /// Sets the irradiance of a sample, and what it mirrors, if just `surface.lights` light it: without
-  /// shadow rays.
+  /// Sets the irradiance of a sample, and what it mirrors, if just `surface.lights` light it:
+  /// without shadow rays.
   void set_light(const Ray& ray, TriangleId triangle, SurfaceSample& surface) const;
   [[nodiscard]] bool is_lit() const;
   /// The flickers of its lights, each once; empty in steady light.
@@ -204,10 +204,10 @@ class Scene {
                                            LightSet lights, PatchLighting& lighting) const;
   /// Whether some of its lights are spots, whose irradiance changes fast at the edge of their cone.
   [[nodiscard]] bool has_spots() const;
-  /// Bounds of the irradiance of what is seen of `triangle` from one ray to a later one, and of what
-  /// it mirrors, if just `lights` light it: Illumination::irradiance_range(). `from` and `to` are the samples of both
-  /// rays, `middle_ray` is halfway in time. nullopt where one misses the triangle's plane. With a
-  /// normal map, `mapped` bounds its vector on the way.
+  /// Bounds of the irradiance of what is seen of `triangle` from one ray to a later one, and of
+  /// what it mirrors, if just `lights` light it: Illumination::irradiance_range(). `from` and `to`
+  /// are the samples of both rays, `middle_ray` is halfway in time. nullopt where one misses the
+  /// triangle's plane. With a normal map, `mapped` bounds its vector on the way.
   [[nodiscard]] std::optional<SurfaceLightRange> light_range(
       const Ray& from_ray, const SurfaceSample& from, const Ray& middle_ray, const Ray& to_ray,
       const SurfaceSample& to, TriangleId triangle, LightSet lights,

@@ -52,7 +52,8 @@ class MapReprojection {
   /// The map's sample under a pixel at a time; nullptr where it is not visible.
   [[nodiscard]] const MapSample* find_sample(const Eigen::Vector2f& pixel, float time_s,
                                              const Motion& motion) const {
-    // What is visible there now was elsewhere in the view that was drawn: one step of a fixed point.
+    // What is visible there now was elsewhere in the view that was drawn: one step of a fixed
+    // point.
     const MapSample* here = sample_at(pixel);
     if (here == nullptr) return nullptr;
     const Eigen::Vector2f before = pixel + (pixel - project(here->point, time_s, motion));
@@ -69,8 +70,8 @@ class MapReprojection {
   /// What an observation may see of the map, between its texels; nullopt beside the map.
   [[nodiscard]] std::optional<MapLevels> levels(const LogIntensityObservation& observation,
                                                 const MapSample& at, const Motion& motion) const;
-  /// Every pixel of the sensor, as far apart as the view's nodes, at which the map's slope is at least
-  /// so great [log units/px]; by rows.
+  /// Every pixel of the sensor, as far apart as the view's nodes, at which the map's slope is at
+  /// least so great [log units/px]; by rows.
   [[nodiscard]] std::vector<std::uint32_t> steep_pixels(float least_slope) const;
 
  private:

@@ -8,9 +8,9 @@ namespace config {
 class Fields;
 }
 
-/// How a surface mirrors lights: one lobe around the mirrored direction, of microfacets (GGX; Walter
-/// et al., EGSR 2007) without self-shadowing and with the same reflectance from all sides. A light
-/// that gives a white surface the radiance E adds
+/// How a surface mirrors lights: one lobe around the mirrored direction, of microfacets (GGX;
+/// Walter et al., EGSR 2007) without self-shadowing and with the same reflectance from all sides. A
+/// light that gives a white surface the radiance E adds
 ///   E reflectance lobe(sin^2 a),   lobe(s) = alpha^2 / (4 (alpha^2 + (1 - alpha^2) s)^2)
 /// with a the angle between the shading normal and the direction halfway between eye and light.
 struct Gloss {
@@ -30,7 +30,7 @@ struct GlossOptions {
   double roughness = 0.4;
 };
 
-/// Below this roughness a highlight is narrower than what moves it between two samples.
+/// The least roughness: smoother surfaces would mirror a point, which no real light is.
 inline constexpr double kLeastRoughness = 0.1;
 
 /// Of a surface as it is stated; rougher where it would be smoother than kLeastRoughness.

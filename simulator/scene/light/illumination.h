@@ -55,18 +55,18 @@ class Illumination {
 
   /// The bounds of irradiance() from `from` to `to`, two points of a surface at the ends of an
   /// interval that `lights` light throughout, and at `middle` halfway in time, of which only spots
-  /// ask. The cosine over the distance squared is taken to stay near the line between both ends; the
-  /// falloff of cones and the flicker are bounded in closed form. `normal`: bounds of a shading normal
-  /// that may leave the line between both ends'.
+  /// ask. The cosine over the distance squared is taken to stay near the line between both ends;
+  /// the falloff of cones and the flicker are bounded in closed form. `normal`: bounds of a shading
+  /// normal that may leave the line between both ends'.
   [[nodiscard]] LightRange irradiance_range(const LitPoint& from, const Eigen::Vector3d& middle,
                                             const LitPoint& to, LightSet lights,
                                             const VectorRange* normal = nullptr) const;
 
-  /// What a glossy surface mirrors of `lights` towards the eye: Gloss::factor() times what each light
-  /// adds to irradiance(). Ambient light and surroundings are not mirrored.
+  /// What a glossy surface mirrors of `lights` towards the eye: Gloss::factor() times what each
+  /// light adds to irradiance(). Ambient light and surroundings are not mirrored.
   [[nodiscard]] double mirrored(const GlossyPoint& seen, const Gloss& gloss, LightSet lights) const;
-  /// Its bounds, as irradiance_range(): the directions to the eye and to the lights are taken to stay
-  /// near the line between both ends'.
+  /// Its bounds, as irradiance_range(): the directions to the eye and to the lights are taken to
+  /// stay near the line between both ends'.
   [[nodiscard]] LightRange mirrored_range(const GlossyPoint& from, const Eigen::Vector3d& middle,
                                           const GlossyPoint& to, const Gloss& gloss,
                                           LightSet lights,

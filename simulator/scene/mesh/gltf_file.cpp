@@ -142,9 +142,15 @@ std::optional<GltfFile> GltfFile::open(const FileSource& source, const fs::path&
             : "";
     if (!version.starts_with("2")) return std::nullopt;
     gltf.check_extensions();
-    expand_gltf_instances({[&](std::size_t index) { return gltf.accessor(index); },
-                           [&](const std::string& problem) { gltf.fail(problem); }},
-                          gltf.document_);
+    expand_gltf_instances(
+        {[&](std::size_t index, std::size_t width) {
+           const json& stated = gltf.item("accessors", index);
+           if (stated.is_object() && gltf_width(stated.at("type").get<std::string>()) != width)
+             gltf.fail(fmt::format("accessor {} is not of {} numbers", index, width));
+           return gltf.accessor(index);
+         },
+         [&](const std::string& problem) { gltf.fail(problem); }},
+        gltf.document_);
   } catch (const json::exception& error) {
     gltf.fail(error.what());
   }

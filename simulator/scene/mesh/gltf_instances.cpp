@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <utility>
@@ -24,10 +26,11 @@ struct PlacePart {
 constexpr PlacePart kPlaceParts[] = {
     {"TRANSLATION", "translation", 3}, {"ROTATION", "rotation", 4}, {"SCALE", "scale", 3}};
 
-/// One child per place, in their order; none where the node is no instanced mesh.
-std::vector<json> children_of(const json& node, std::size_t index, const GltfAccess& access) {
+/// One child per place, in their order; nullopt where the node is no instanced mesh.
+std::optional<std::vector<json>> children_of(const json& node, std::size_t index,
+                                             const GltfAccess& access) {
   const json::json_pointer stated(std::string("/extensions/") + kExtension + "/attributes");
-  if (!node.is_object() || !node.contains("mesh") || !node.contains(stated)) return {};
+  if (!node.is_object() || !node.contains("mesh") || !node.contains(stated)) return std::nullopt;
   json child{{"mesh", node["mesh"]}};
   if (node.contains("name")) child["name"] = node["name"];
   std::optional<std::size_t> count;
@@ -35,9 +38,12 @@ std::vector<json> children_of(const json& node, std::size_t index, const GltfAcc
   for (const auto& [attribute, key, width] : kPlaceParts) {
     const json& attributes = node.at(stated);
     if (!attributes.contains(attribute)) continue;
-    const std::vector<float> numbers = access.accessor(attributes.at(attribute).get<std::size_t>());
-    if (numbers.size() % width != 0 || (count && *count != numbers.size() / width))
-      access.fail(fmt::format("the places of its node {} differ in number or kind", index));
+    const std::vector<float> numbers =
+        access.accessor(attributes.at(attribute).get<std::size_t>(), width);
+    if (count && *count != numbers.size() / width)
+      access.fail(fmt::format("the places of its node {} differ in number", index));
+    if (!std::ranges::all_of(numbers, [](float x) { return std::isfinite(x); }))
+      access.fail(fmt::format("a place of its node {} is not finite", index));
     count = numbers.size() / width;
     if (*count > kMostPlaces)
       access.fail(fmt::format("its node {} is in more than {} places", index, kMostPlaces));
@@ -58,13 +64,13 @@ void expand_gltf_instances(const GltfAccess& access, json& document) {
   json& nodes = document["nodes"];
   const std::size_t stated = nodes.size();
   for (std::size_t i = 0; i < stated; ++i) {
-    std::vector<json> children = children_of(nodes[i], i, access);
-    if (children.empty()) continue;
-    if (nodes.size() - stated + children.size() > kMostPlaces)
+    std::optional<std::vector<json>> children = children_of(nodes[i], i, access);
+    if (!children) continue;
+    if (nodes.size() - stated + children->size() > kMostPlaces)
       access.fail(fmt::format("its nodes are in more than {} places", kMostPlaces));
     nodes[i].erase("mesh");
     nodes[i]["extensions"].erase(kExtension);
-    for (json& child : children) {
+    for (json& child : *children) {
       nodes[i]["children"].push_back(nodes.size());
       nodes.push_back(std::move(child));
     }

@@ -69,6 +69,11 @@ bool is_black(const RgbF& colour) {
   return std::ranges::all_of(colour, [](float c) { return c == 0; });
 }
 
+double mean_of(const ImageF& image) {
+  const std::span<const float> values = image.pixels();
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
 ImageF constant_image(float value) { return {2, 2, value}; }
 
 /// The sum of two pictures that cover the same square, in the finer one's texels.
@@ -330,7 +335,7 @@ ImportedMaterial GltfMaterials::read(const json& material) {
   }
   add_emission(material, base, result);
   add_normal_map(material, result);
-  if (takes_gloss()) result.material.gloss = gloss_of(material, base);
+  if (takes_gloss()) result.material.gloss = gloss_of(material, result.material);
   return result;
 }
 
@@ -338,11 +343,12 @@ bool GltfMaterials::takes_gloss() const {
   return context_.options.is_lit && context_.options.takes_gloss;
 }
 
-/// A metal mirrors its base colour, anything else 4 % of all colours. Of pictures the mean counts.
-Gloss GltfMaterials::gloss_of(const json& material, const Base& base) {
+/// A metal mirrors its base colour, anything else 4 % of all colours. Of pictures the mean counts. A
+/// material that says nothing of it is matt.
+Gloss GltfMaterials::gloss_of(const json& material, const Material& shown) {
   constexpr double kDielectric = 0.04;
   const json& surface = member(material, "pbrMetallicRoughness");
-  if (!surface.is_object()) return {};
+  if (!surface.is_object() || extension(material, "KHR_materials_unlit").is_object()) return {};
   auto roughness = static_cast<double>(number(member(surface, "roughnessFactor"), 1));
   auto metalness = static_cast<double>(number(member(surface, "metallicFactor"), 1));
   if (const auto use = texture_use(member(surface, "metallicRoughnessTexture"))) {
@@ -350,7 +356,8 @@ Gloss GltfMaterials::gloss_of(const json& material, const Base& base) {
     roughness *= codes[1];
     metalness *= codes[2];
   }
-  const double metal = std::clamp(grey_of(base.colour, context_.options.channel), 0.0, 1.0);
+  const double metal = std::clamp(
+      shown.texture ? shown.factor * mean_of(shown.texture->image()) : shown.albedo, 0.0, 1.0);
   return make_gloss(std::lerp(kDielectric, metal, std::clamp(metalness, 0.0, 1.0)), roughness);
 }
 
@@ -364,11 +371,8 @@ const std::array<double, 3>& GltfMaterials::mean_codes(const TextureUse& use) {
   };
   const auto map = load_or(context_.options.missing_texture, context_.remarks,
                            "the factors of roughness and metalness count without it", decode);
-  for (std::size_t k = 0; map && k < known->second.size(); ++k) {
-    const std::span<const float> values = map->part(k).image().pixels();
-    const double sum = std::accumulate(values.begin(), values.end(), 0.0);
-    known->second[k] = 0.5 * (sum / static_cast<double>(values.size()) + 1);
-  }
+  for (std::size_t k = 0; map && k < known->second.size(); ++k)
+    known->second[k] = 0.5 * (mean_of(map->part(k).image()) + 1);
   return known->second;
 }
 

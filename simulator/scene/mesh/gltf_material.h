@@ -55,7 +55,8 @@ class GltfMaterials {
   void add_self_light(const Base& base, const std::optional<TextureUse>& use,
                       ImportedMaterial& result) const;
   [[nodiscard]] bool takes_gloss() const;
-  [[nodiscard]] Gloss gloss_of(const nlohmann::json& material, const Base& base);
+  /// `shown`: the material as far as it is read.
+  [[nodiscard]] Gloss gloss_of(const nlohmann::json& material, const Material& shown);
   /// Of the colours of a picture, as numbers from 0 to 1.
   [[nodiscard]] const std::array<double, 3>& mean_codes(const TextureUse& use);
   static void take_coordinates(const TextureUse& use, ImportedMaterial& material);

@@ -34,9 +34,9 @@ struct MeshSurface {
 /// triangulated, points, lines and wholly transparent surfaces left out. Files without normals are
 /// shaded smoothly where faces meet at less than 40 degrees. A texture replaces the material's
 /// colour (whose value beside one means nothing in most files), except in glTF, which defines their
-/// product (gltf_material.h), and in maps of Quake III, whose pictures and scripts are in the archives
-/// of their game (quake3/). A *.relief.yaml on disk is a surface of generate_relief(). Archives
-/// stay open and textures loaded as long as the importer lives. Not thread-safe.
+/// product (gltf_material.h), and in maps of Quake III, whose pictures and scripts are in the
+/// archives of their game (quake3/). A *.relief.yaml on disk is a surface of generate_relief().
+/// Archives stay open and textures loaded as long as the importer lives. Not thread-safe.
 class MeshImporter {
  public:
   explicit MeshImporter(const MeshImportOptions& options = {});

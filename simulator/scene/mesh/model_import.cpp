@@ -401,7 +401,7 @@ std::string import_in_child(const FileSource& own, const fs::path& file,
 void check_model_format(const fs::path& file, const std::string& source_name) {
   const std::string extension = file.extension().string();
   if (is_quake3_map(file)) return;
-  if (extension == ".pk3" && fs::is_regular_file(file))
+  if (is_quake3_archive(file) && fs::is_regular_file(file))
     throw InputError(source_name, problem_of_archive(file, source_name));
   if (!Assimp::Importer().IsExtensionSupported(extension))
     throw InputError(source_name,

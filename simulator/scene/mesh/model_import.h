@@ -11,9 +11,9 @@
 namespace saccade {
 
 /// Reads a model through assimp, or a Quake III map, in a process of its own, so that an importer
-/// that crashes, hangs or takes all memory becomes an error. `file` of `source`; `source_name` is what errors name. Throws
-/// InputError when the format is unknown, the file is damaged, its material library is missing, or
-/// the importer dies.
+/// that crashes, hangs or takes all memory becomes an error. `file` of `source`; `source_name` is
+/// what errors name. Throws InputError when the format is unknown, the file is damaged, its
+/// material library is missing, or the importer dies.
 [[nodiscard]] Model import_model(const FileSource& source, const std::filesystem::path& file,
                                  const std::string& source_name, const ReplacedFiles& replaced = {},
                                  const ForkLimits& limits = {});

@@ -32,6 +32,11 @@ constexpr std::size_t kMostParts = kParts * kQuietSteps;
 /// Within this part of a short step the edge of a shadow is located in double precision: sixteen
 /// times what single precision is wrong by, so that it is within.
 constexpr double kSettled = 1.0 / 16;
+/// Between two samples of a glossy surface its highlight may change the radiance by this part. With
+/// 0.05 of the events of plates that turn 0.956 to 0.982 come within 10 us of the exact ones, with
+/// 0.02 0.976 to 0.995, with 0.005 0.980 to 1 in twice the time. A surface that turns sends a light
+/// through a pixel while its image hardly moves.
+constexpr double kMostFlash = 0.02;
 /// Halves of steps are as long as this times what they should be, at most.
 constexpr double kArcSlack = 1.01;
 
@@ -228,6 +233,18 @@ std::optional<double> AdaptiveTile::sense_lines(std::size_t i) {
         ahead.push_back(sampler_.resample({i, *kink_s}, pixel.now));
         continue;
       }
+    if (may_flash(i, pixel.now, ahead.back())) {
+      const double middle_s = 0.5 * (pixel.now.t_s + ahead.back().t_s);
+      if (ahead.back().t_s - pixel.now.t_s <= bracket_s_) {
+        sense_line(i, pixel, ahead.back());
+        ahead.pop_back();
+      } else if (sampler_.rays_per_pixel() > 1) {
+        return middle_s;
+      } else {
+        ahead.push_back(sampler_.resample({i, middle_s}, pixel.now));
+      }
+      continue;
+    }
     if (is_arc(pixel.now, ahead.back())) {
       if (sense_arc(i, pixel, ahead.back())) {
         ahead.pop_back();
@@ -287,6 +304,13 @@ std::optional<ViewSample> AdaptiveTile::resample_settled(std::size_t i, double t
 bool AdaptiveTile::is_arc(const ViewSample& from, const ViewSample& to) const {
   return from.triangles == to.triangles && from.lights == to.lights && from.triangle != kNothing &&
          has_arcs_ && !scene_.has_normal_map(from.triangle);
+}
+
+bool AdaptiveTile::may_flash(std::size_t i, const ViewSample& from, const ViewSample& to) {
+  return scene_.is_glossy(from.triangle) && from.triangle == to.triangle &&
+         from.lights_of_ray == to.lights_of_ray && from.distance > 0 && to.distance > 0 &&
+         sampler_.mirrored_span(i, from, to) >
+             kMostFlash * (options_.log_eps + std::min(from.radiance, to.radiance));
 }
 
 bool AdaptiveTile::sense_arc(std::size_t i, SignalSoFar& pixel, const ViewSample& next) {

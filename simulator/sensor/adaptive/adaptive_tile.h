@@ -99,6 +99,8 @@ class AdaptiveTile {
   void sense_line(std::size_t i, SignalSoFar& pixel, const ViewSample& next);
   /// Whether all between two samples follows from what both see.
   [[nodiscard]] bool is_arc(const ViewSample& from, const ViewSample& to) const;
+  /// Whether the highlight of a glossy surface may pass between two samples.
+  [[nodiscard]] bool may_flash(std::size_t i, const ViewSample& from, const ViewSample& to);
   /// Senses pixel `i`, which sees one triangle up to its next sample. False where that needs more
   /// samples in between.
   [[nodiscard]] bool sense_arc(std::size_t i, SignalSoFar& pixel, const ViewSample& next);

@@ -10,8 +10,8 @@ namespace saccade {
 /// What a ray sees of one triangle, under the same lights, from one instant to a later one: the
 /// parabolas in time through three samples, with u = 0..1 from the first to the last
 ///   v(u) = v0 + u (4 vm - 3 v0 - v1) + 2 u^2 (v0 - 2 vm + v1)
-/// of the texel, the pyramid's level, the irradiance and what is mirrored. They are many times cheaper than the
-/// triangle, the pose and the lights.
+/// of the texel, the pyramid's level, the irradiance and what is mirrored. They are many times
+/// cheaper than the triangle, the pose and the lights.
 class SurfaceArc {
  public:
   /// `middle` is seen halfway from `from_s` to `to_s` > from_s. All are of one triangle.

@@ -214,6 +214,20 @@ SurfaceArc ViewSampler::arc(std::size_t pixel, const ViewSample& from, const Vie
   return {from.t_s, to.t_s, end(from), middle, end(to)};
 }
 
+double ViewSampler::mirrored_span(std::size_t pixel, const ViewSample& from, const ViewSample& to) {
+  const auto ray_at = [&](double t_s) {
+    const CameraFrame& camera = camera_at(t_s);
+    return Ray{camera.position, camera.rotation * directions(pixel)[0], t_s};
+  };
+  const auto seen = [](const ViewSample& sample) {
+    return SurfaceSample{.distance = sample.distance, .normal_level = sample.normal_level};
+  };
+  const auto range =
+      scene_.light_range(ray_at(from.t_s), seen(from), ray_at(0.5 * (from.t_s + to.t_s)),
+                         ray_at(to.t_s), seen(to), from.triangle, from.lights_of_ray);
+  return range ? range->mirrored.high - range->mirrored.low : 0;
+}
+
 std::optional<ViewSample> ViewSampler::resample(const SampleRequest& request,
                                                 const ViewSample& before, const ViewSample& after) {
   const CameraFrame& camera = camera_at(request.t_s);

@@ -65,6 +65,10 @@ class ViewSampler {
   [[nodiscard]] ViewSample resample(const SampleRequest& request, const ViewSample& like,
                                     LightSet lights);
 
+  /// How much what the first ray sees mirrored of the lights may change between two samples of one
+  /// triangle under the same lights, by its bounds.
+  [[nodiscard]] double mirrored_span(std::size_t pixel, const ViewSample& from,
+                                     const ViewSample& to);
   /// What a pixel with one ray sees from one sample to a later one if it sees the same triangle and
   /// the same lights all the time: without a ray.
   [[nodiscard]] SurfaceArc arc(std::size_t pixel, const ViewSample& from, const ViewSample& to);

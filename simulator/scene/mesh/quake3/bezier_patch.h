@@ -22,8 +22,8 @@ struct Quake3Grid {
 };
 
 /// Into how many parts each curve of a patch is divided. It is the same for all, so that patches
-/// that share a border share its vertices, and no gap opens between them. A quarter of a circle is
-/// off by at most 0.6 % of its radius.
+/// that share a border share its vertices, and no gap opens between them. The
+/// chords of a quarter of a cylinder are off its curve by at most 0.6 % of the radius.
 constexpr std::size_t kPatchParts = 8;
 
 /// Vertices of the grid of a surface of `width` x `height` control points.

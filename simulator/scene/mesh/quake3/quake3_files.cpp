@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <system_error>
 
+#include "core/error.h"
+#include "simulator/scene/mesh/quake3/quake3_map.h"
+
 namespace saccade {
 namespace {
 
@@ -15,7 +18,8 @@ std::vector<fs::path> archives_of(const fs::path& folder, const fs::path& but) {
   const fs::path place = folder.empty() ? fs::path(".") : folder;
   for (const fs::directory_entry& entry : fs::directory_iterator(place, none)) {
     const fs::path path = folder / entry.path().filename();
-    if (path.extension() == ".pk3" && path != but) archives.push_back(path);
+    if (is_quake3_archive(path) && path != but && entry.is_regular_file(none))
+      archives.push_back(path);
   }
   std::ranges::sort(archives, std::ranges::greater());
   return archives;
@@ -24,11 +28,18 @@ std::vector<fs::path> archives_of(const fs::path& folder, const fs::path& but) {
 }  // namespace
 
 Quake3Files::Quake3Files(const FileSource& own, const fs::path& map) : own_(own) {
-  const fs::path folder = map.parent_path();
+  fs::path folder = map.parent_path().lexically_normal();
+  // A file that is named from within its folder.
+  const bool is_relative = folder.empty() || folder.filename() == "." || folder.filename() == "..";
+  if (own.archive().empty() && is_relative)
+    folder = fs::absolute(map).lexically_normal().parent_path();
   root_ = folder.filename() == "maps" ? folder.parent_path() : folder;
   const fs::path beside = own.archive().empty() ? root_ : own.archive().parent_path();
-  for (const fs::path& archive : archives_of(beside, own.archive()))
-    archives_.emplace_back(archive);
+  for (const fs::path& archive : archives_of(beside, own.archive())) try {
+      archives_.emplace_back(archive);
+    } catch (const InputError& error) {
+      problems_.emplace_back(error.what());
+    }
 }
 
 std::vector<const FileSource*> Quake3Files::sources() const {

@@ -9,8 +9,8 @@
 
 namespace saccade {
 
-/// The files of a game as its maps see them: those of the map's own archive or folder, then those of
-/// the other archives (*.pk3) beside it, the last by name first, as the game takes them. Not
+/// The files of a game as its maps see them: those of the map's own archive or folder, then those
+/// of the other archives (*.pk3) beside it, the last by name first, as the game takes them. Not
 /// thread-safe.
 class Quake3Files {
  public:
@@ -19,8 +19,7 @@ class Quake3Files {
     std::filesystem::path file;
   };
 
-  /// `own`: where the map is; outlives it. `map`: its path there. Throws InputError where an archive
-  /// beside it cannot be opened.
+  /// `own`: where the map is; outlives it. `map`: its path there.
   Quake3Files(const FileSource& own, const std::filesystem::path& map);
 
   /// The picture that a shader names, whatever its ending: "textures/wall/brick".
@@ -29,6 +28,8 @@ class Quake3Files {
   [[nodiscard]] std::vector<Found> scripts() const;
   /// Where it looks, for errors.
   [[nodiscard]] std::string places() const;
+  /// What is wrong with archives beside the map that cannot be opened.
+  [[nodiscard]] const std::vector<std::string>& problems() const { return problems_; }
 
  private:
   [[nodiscard]] std::vector<const FileSource*> sources() const;
@@ -38,6 +39,7 @@ class Quake3Files {
   const FileSource& own_;
   std::filesystem::path root_;  ///< of the game, in own_
   std::vector<FileSource> archives_;
+  std::vector<std::string> problems_;
 };
 
 }  // namespace saccade

@@ -71,9 +71,22 @@ static_assert(sizeof(FileShader) == 72 && sizeof(FileModel) == 40 && sizeof(File
 constexpr std::int32_t kPolygon = 1, kPatch = 2, kMesh = 3;
 constexpr std::uint32_t kIsSky = 0x4, kIsHint = 0x100, kIsSkipped = 0x200, kIsNotDrawn = 0x80;
 constexpr float kMetresPerUnit = 1.0F / 32;
-/// The game takes 524288 vertices. Were all of them control points of patches, 16 times as many would
-/// be shown; a damaged file can name the same ones again and again.
+/// The game takes 524288 vertices. Were all of them control points of patches, 16 times as many
+/// would be shown; a damaged file can name the same ones again and again.
 constexpr std::size_t kMostVertices = std::size_t{16} * 524288;
+
+std::string lower_ending_of(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending;
+}
+
+/// Names of a file are any bytes; those of labels and of errors are text.
+std::string printable(std::string name) {
+  for (char& c : name)
+    if (c < ' ' || c > '~') c = '?';
+  return name;
+}
 
 [[noreturn]] void damaged(const std::string& what) {
   throw std::runtime_error("is a damaged map: " + what);
@@ -145,7 +158,8 @@ class MapReader {
   [[nodiscard]] Model read() {
     for (const FileShader& shader : shaders_) {
       ModelMaterial& material = result_.materials.emplace_back();
-      material.name.assign(shader.name.data(), strnlen(shader.name.data(), shader.name.size()));
+      material.name =
+          printable({shader.name.data(), strnlen(shader.name.data(), shader.name.size())});
       material.ignored.emplace_back("baked light");
     }
     if (models_.empty()) damaged("it has no world");
@@ -156,7 +170,8 @@ class MapReader {
 
  private:
   void add_entity(const Quake3Entity& entity) {
-    const std::string kind = entity.value("classname"), model = entity.value("model");
+    const std::string kind = printable(entity.value("classname"));
+    const std::string model = printable(entity.value("model"));
     if (kind == "light") ++result_.lights;
     if (kind.starts_with("info_player_") || kind == "team_CTF_redspawn" ||
         kind == "team_CTF_bluespawn")
@@ -226,7 +241,8 @@ class MapReader {
 
   void add_triangles(const FileFace& face, std::span<const FileVertex> vertices, ModelPart& part) {
     const auto corners = range_of(corners_, face.first_corner, face.corner_count, "corners");
-    const std::uint32_t first = first_of(vertices.size(), part);
+    // Corners count as well: many triangles may share few vertices.
+    const std::uint32_t first = first_of(vertices.size() + corners.size(), part);
     for (const FileVertex& vertex : vertices) add_vertex(vertex_of(vertex), part);
     for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
       for (std::size_t k = i; k < i + 3; ++k)
@@ -261,7 +277,8 @@ class MapReader {
       }
   }
 
-  /// The index of the first of `count` vertices that are about to be added.
+  /// The index of the next vertex of a part, to which `count` vertices and corners are about to be
+  /// added.
   std::uint32_t first_of(std::size_t count, const ModelPart& part) {
     vertices_added_ += count;
     if (vertices_added_ > kMostVertices)
@@ -300,10 +317,10 @@ class MapReader {
 
 }  // namespace
 
-bool is_quake3_map(const std::filesystem::path& file) {
-  std::string ending = file.extension().string();
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return ending == ".bsp";
+bool is_quake3_map(const std::filesystem::path& file) { return lower_ending_of(file) == ".bsp"; }
+
+bool is_quake3_archive(const std::filesystem::path& file) {
+  return lower_ending_of(file) == ".pk3";
 }
 
 Model read_quake3_map(const Bytes& bytes) { return MapReader(MapTables(bytes)).read(); }

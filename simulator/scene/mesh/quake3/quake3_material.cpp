@@ -25,6 +25,8 @@ std::string packages_hint(const std::string& places) {
 
 Quake3Materials::Quake3Materials(const MaterialContext& context)
     : context_(context), files_(context.source, context.mesh_file) {
+  for (const std::string& problem : files_.problems())
+    context_.remarks.say(problem + "; its pictures are not looked at");
   for (const auto& [source, file] : files_.scripts())
     if (const std::optional<Bytes> bytes = source->read(file))
       shaders_.merge(parse_quake3_script(

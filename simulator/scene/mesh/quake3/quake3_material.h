@@ -12,7 +12,7 @@ namespace saccade {
 /// The materials of a Quake III map, whose pictures and scripts lie in the archives of the game.
 class Quake3Materials {
  public:
-  /// `context` outlives it. Throws InputError where an archive of the game cannot be read.
+  /// `context` outlives it.
   explicit Quake3Materials(const MaterialContext& context);
 
   /// The material of a shader. A shader that no script defines is the picture of its name. Throws

@@ -69,7 +69,9 @@ struct Stage {
     return blend.empty() || (blend.size() > 1 && blend[0] == "gl_one" && blend[1] == "gl_zero");
   }
   [[nodiscard]] bool fades() const {
-    return !blend.empty() && (blend[0] == "blend" || blend[0] == "gl_src_alpha");
+    return !blend.empty() &&
+           (blend[0] == "blend" || (blend.size() > 1 && blend[0] == "gl_src_alpha" &&
+                                    blend[1] == "gl_one_minus_src_alpha"));
   }
 };
 
@@ -93,8 +95,8 @@ void read_stage_line(const Words& words, Stage& stage) {
     stage.moves = true;
   } else if (key == "blendfunc") {
     stage.blend.assign(words.begin() + 1, words.end());
-  } else if (key == "alphafunc") {
-    stage.is_tested = true;
+  } else if (key == "alphafunc" && words.size() > 1) {
+    stage.is_tested = words[1] != "lt128";  // shown as a whole
   } else if (key == "tcgen" && words.size() > 1) {
     stage.is_reflection = words[1] == "environment";
   } else if (key == "tcmod" && words.size() > 3 && words[1] == "scale") {

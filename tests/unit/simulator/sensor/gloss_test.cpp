@@ -174,6 +174,43 @@ TEST(GlossEvents, AdaptiveAgreesWithExact) {
     }
 }
 
+/// A small plain plate, in whose place a plate stays while it turns by a radian: lamps flash through
+/// its pixels, although its image hardly moves.
+Scene turning_plate(double roughness, double ambient) {
+  Mesh plate = testing::rectangle({-0.2, -0.2, 0}, {0.4, 0, 0}, {0, 0.4, 0}, ImageF(2, 2, 0.5F));
+  std::vector<StampedPose> poses;
+  for (int k = 0; k <= 10; ++k)
+    poses.push_back({0.02 * k, Rigid3(Eigen::Quaterniond(Eigen::AngleAxisd(
+                                          0.1 * k - 0.5, Eigen::Vector3d::UnitY())),
+                                      Eigen::Vector3d(0, 0, 2))});
+  SceneBuilder builder;
+  builder.add_moving(glossy(plate, roughness), Eigen::Affine3d::Identity(),
+                     Spline::interpolate(poses));
+  builder.light(ambient, {lamp_beside()});
+  return std::move(builder).build(Background(0.5));
+}
+
+TEST(GlossEvents, AdaptiveSeesTheFlashesOfAPlateThatTurns) {
+  std::vector<StampedPose> poses;
+  for (int k = 0; k <= 4; ++k) poses.push_back({0.05 * k, Rigid3()});
+  const Spline still = Spline::interpolate(poses);
+  for (const double roughness : {0.1, 0.2})
+    for (const double ambient : {0.1, 5.0, 30.0}) {
+      const Scene scene = turning_plate(roughness, ambient);
+      const EventOptions options = testing::in_nanoseconds();
+      const Events exact = glossy_events<EventCamera>(scene, still, options);
+      const Events sampled = glossy_events<AdaptiveCamera>(scene, still, options);
+      const auto pairs = static_cast<double>(testing::count_pairs(exact, sampled, 10'000));
+      const double least = pairs / static_cast<double>(std::max(exact.size(), sampled.size()));
+      std::printf("roughness %g, ambient %g: %zu exact and %zu adaptive events, %.4f in pairs\n",
+                  roughness, ambient, exact.size(), sampled.size(), least);
+      EXPECT_GT(exact.size(), 100U);
+      EXPECT_EQ(sampled.size(), exact.size());
+      // Next to a signal's extremum a crossing takes longer than that.
+      EXPECT_GT(least, 0.97);
+    }
+}
+
 class GlossThreads : public ::testing::Test {
  protected:
   ~GlossThreads() override { set_thread_count(0); }

@@ -7,6 +7,7 @@
 #include "core/config/config.h"
 #include "core/error.h"
 #include "core/io/images/image_file.h"
+#include "core/srgb.h"
 #include "simulator/scene/mesh/mesh_import.h"
 #include "simulator/scene/scene_options.h"
 #include "tests/support/error_of.h"
@@ -35,7 +36,7 @@ class GltfGloss : public testing::MeshFiles {
       "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteLength": 24}],
       "buffers": [{"byteLength": 36, "uri":
         "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAAAAQAAAAAAAAAAAAAAAAAAAAAAAAADA"}]})");
-    document["materials"] = {{{"pbrMetallicRoughness", surface}}};
+    document["materials"] = {{{"pbrMetallicRoughness", surface}, {"extensions", extensions_}}};
     const std::filesystem::path file = write("t.gltf", document.dump());
     MeshImportOptions options;
     options.is_lit = true;
@@ -47,6 +48,7 @@ class GltfGloss : public testing::MeshFiles {
     return mesh.materials.at(mesh.triangles.at(0).material);
   }
   MissingTexture missing_ = MissingTexture::kError;
+  json extensions_ = json::object();
   std::vector<std::string> remarks_;
 };
 
@@ -61,6 +63,18 @@ TEST_F(GltfGloss, AMetalMirrorsItsColourAndOthersFourPercent) {
   const Material half =
       material({{"baseColorFactor", {0.6, 0.6, 0.6, 1}}, {"metallicFactor", 0.5}});
   EXPECT_FLOAT_EQ(half.gloss.reflectance, 0.32F);
+}
+
+TEST_F(GltfGloss, AMetalUnderAPictureMirrorsTheMeanOfIt) {
+  write("rough.png", encode_png(ImageU8(2, 2, 128)));
+  const Material bronze =
+      material({{"baseColorFactor", {0.5, 0.5, 0.5, 1}}, {"baseColorTexture", {{"index", 0}}}});
+  EXPECT_NEAR(bronze.gloss.reflectance, 0.5 * linear_from_srgb8(128), 1e-6);
+}
+
+TEST_F(GltfGloss, WhatIsUnlitIsMatt) {
+  extensions_ = {{"KHR_materials_unlit", json::object()}};
+  EXPECT_TRUE(material({{"roughnessFactor", 0.5}}).gloss.is_matt());
 }
 
 TEST_F(GltfGloss, IsLeftOutWithOneLineByDefault) {

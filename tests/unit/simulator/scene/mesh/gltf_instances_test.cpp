@@ -4,6 +4,7 @@
 
 #include <cstring>
 #include <functional>
+#include <limits>
 
 #include "core/error.h"
 #include "simulator/scene/mesh/base64.h"
@@ -96,12 +97,33 @@ TEST_F(GltfInstances, PlacesThatDoNotFitAreErrors) {
                 d["nodes"][1]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["SCALE"] = 9;
               }),
               HasSubstr("it has no accessor 9"));
+  EXPECT_THAT(problem([](json& d) { d["accessors"][1]["type"] = "SCALAR"; }),
+              HasSubstr("accessor 1 is not of 3 numbers"));
+}
+
+TEST_F(GltfInstances, PlacesThatAreNotFiniteOrNoneAtAll) {
+  json document = two_trees();
+  std::vector<float> numbers(6, std::numeric_limits<float>::quiet_NaN());
+  const GltfAccess access{[&](std::size_t, std::size_t) { return numbers; },
+                          [](const std::string& problem) { throw InputError("t.gltf", problem); }};
+  document["nodes"][1]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
+      {"TRANSLATION", 1}};
+  EXPECT_THAT(testing::error_of([&] {
+                expand_gltf_instances(access, document);
+                return 0;
+              }),
+              HasSubstr("a place of its node 1 is not finite"));
+  numbers.clear();
+  expand_gltf_instances(access, document);
+  EXPECT_FALSE(document["nodes"][1].contains("mesh"));
+  EXPECT_EQ(document["nodes"].size(), 2U);
 }
 
 TEST_F(GltfInstances, ACrowdIsRefused) {
   json document = two_trees();
-  const GltfAccess access{[](std::size_t) { return std::vector<float>(3 * 60'000, 0.0F); },
-                          [](const std::string& problem) { throw InputError("t.gltf", problem); }};
+  const GltfAccess access{
+      [](std::size_t, std::size_t) { return std::vector<float>(3 * 60'000, 0.0F); },
+      [](const std::string& problem) { throw InputError("t.gltf", problem); }};
   document["nodes"][1]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
       {"TRANSLATION", 1}};
   document["nodes"].push_back(document["nodes"][1]);

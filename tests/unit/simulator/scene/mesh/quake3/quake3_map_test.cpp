@@ -196,6 +196,29 @@ TEST(Quake3Map, ACrowdOfFacesIsRefused) {
   EXPECT_THAT(problem_of(file.bytes()), HasSubstr("claims more than 8388608 vertices"));
 }
 
+TEST(Quake3Map, ManyTrianglesOfFewVerticesAreRefused) {
+  Quake3MapFile file;
+  const std::int32_t shader = file.add_shader("textures/wall");
+  const Quake3MapFile::Vertex vertex{{0, 0, 0}, {0, 0}, {0, 0, 1}};
+  file.add_face(1, shader, {vertex, vertex, vertex},
+                std::vector<std::int32_t>(std::size_t{3} << 20U, 0));
+  for (int i = 0; i < 2; ++i)
+    file.add_face(1, shader, {vertex, vertex, vertex},
+                  std::vector<std::int32_t>(std::size_t{3} << 20U, 1));
+  file.end_model();
+  EXPECT_THAT(problem_of(file.bytes()), HasSubstr("claims more than 8388608 vertices"));
+}
+
+TEST(Quake3Map, NamesAreText) {
+  Quake3MapFile file;
+  file.add_square(file.add_shader("textures/\xff\x01wall"));
+  file.end_model();
+  file.entities += "{ \"classname\" \"info_player_\xfe\" }";
+  const Model model = read(file.bytes());
+  EXPECT_EQ(model.materials.front().name, "textures/??wall");
+  EXPECT_EQ(model.cameras.front().name, "info_player_? 1");
+}
+
 constexpr const char* kOpenArena = "/usr/share/games/openarena/baseoa/pak1-maps.pk3";
 
 TEST(Quake3Map, EveryMapOfOpenArenaLoads) {

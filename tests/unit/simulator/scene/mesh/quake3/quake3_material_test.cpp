@@ -101,6 +101,29 @@ TEST_F(Quake3Game, AnArchiveAloneNamesItsMaps) {
   EXPECT_THAT(problem, HasSubstr("maps.pk3!/maps/m.bsp"));
 }
 
+TEST_F(Quake3Game, WhatElseLiesBesideTheMapDoesNotStopIt) {
+  write("junk.pk3", "no archive");
+  fs::create_directories(folder_ / "folder.pk3");
+  write_zip(folder_ / "A.PK3", {{"textures/wall.png", picture(30)}});
+  MeshImporter importer;
+  EXPECT_NEAR(grey_at(importer.read(archive_with({"textures/wall"})), 0), linear_from_srgb8(30),
+              1e-6);
+  EXPECT_THAT(importer.remarks().lines(),
+              ElementsAre(HasSubstr("junk.pk3"), HasSubstr("baked light")));
+}
+
+TEST_F(Quake3Game, AMapMayBeNamedFromWithinItsFolder) {
+  fs::create_directories(folder_ / "maps");
+  fs::create_directories(folder_ / "textures");
+  fs::copy_file(picture(70), folder_ / "textures/wall.png");
+  fs::copy_file(map({"textures/wall"}), folder_ / "maps/m.bsp");
+  const fs::path before = fs::current_path();
+  fs::current_path(folder_ / "maps");
+  for (const char* name : {"m.bsp", "./m.bsp", "../maps/m.bsp"})
+    EXPECT_NEAR(grey_at(MeshImporter().read(name), 0), linear_from_srgb8(70), 1e-6) << name;
+  fs::current_path(before);
+}
+
 TEST_F(Quake3Game, ADamagedMapNamesItsFile) {
   EXPECT_THAT(testing::error_of(
                   [&] { static_cast<void>(MeshImporter().read(write("m.bsp", "IBSP damaged"))); }),

@@ -32,6 +32,9 @@ TEST(Quake3Shader, AnAlphaTestOrAFadeCutsOut) {
   EXPECT_EQ(shader("{\nclampmap decal.tga\nblendFunc blend\n}").coverage,
             Quake3Coverage::kWhereOpaque);
   EXPECT_TRUE(shader("{\nclampmap decal.tga\nblendFunc blend\n}").is_clamped);
+  EXPECT_EQ(shader("{\nmap glow.tga\nblendFunc GL_SRC_ALPHA GL_ONE\n}").coverage,
+            Quake3Coverage::kNone);
+  EXPECT_EQ(shader("{\nmap grate.tga\nalphaFunc LT128\n}").coverage, Quake3Coverage::kAll);
 }
 
 TEST(Quake3Shader, WhatAddsOrFiltersLightIsLeftOut) {
