@@ -12,11 +12,10 @@
 
 #include <Eigen/Geometry>
 
-#include <assimp/Importer.hpp>
-
 #include "core/io/events/event_formats.h"
 #include "simulator/scene/animation/model_motion.h"
 #include "simulator/scene/animation/node_animation.h"
+#include "simulator/scene/mesh/assimp_model.h"
 #include "simulator/scene/mesh/mesh_import.h"
 #include "simulator/scene/mesh/quake3/quake3_map.h"
 #include "simulator/scene/world/world.h"
@@ -185,8 +184,7 @@ bool is_mesh_name(const fs::path& path) {
   if (kNotBuiltIn.contains(ending) || is_quake3_map("map" + ending)) return true;
   // Some endings are those of meshes and of events, as .raw of Prophesee's cameras: here events
   // are meant.
-  return !ending.empty() && !is_event_file_name(path) &&
-         Assimp::Importer().IsExtensionSupported(ending);
+  return !ending.empty() && !is_event_file_name(path) && is_assimp_format(ending);
 }
 
 std::string describe_mesh(const fs::path& file) {

@@ -4,7 +4,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <poll.h>
 #include <sys/wait.h>
 
 #include <cerrno>
@@ -16,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "tests/support/child_end.h"
 #include "tests/support/error_of.h"
 #include "tests/system/saccade_command.h"
 
@@ -25,14 +25,6 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::MatchesRegex;
 using ::testing::StartsWith;
-
-ChildEnd end_of(ChildProcess& process) {
-  pollfd ended{process.descriptor(), POLLIN, 0};
-  ::poll(&ended, 1, 60000);
-  const auto end = process.poll_end();
-  EXPECT_TRUE(end);
-  return end.value_or(ChildEnd{});
-}
 
 /// Those that wait in vain for the other end of a pipe live until they are stopped.
 class ForkServing : public ::testing::Test {

@@ -13,60 +13,17 @@
 #include <span>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
 
-#include "core/io/files/byte_reader.h"
 #include "simulator/scene/mesh/quake3/bezier_patch.h"
 #include "simulator/scene/mesh/quake3/quake3_entities.h"
+#include "simulator/scene/mesh/quake3/quake3_tables.h"
 
 namespace saccade {
 namespace {
-
-/// The tables of a map that are read, by their place in its header.
-enum class Lump : std::size_t {
-  kEntities = 0,
-  kShaders = 1,
-  kModels = 7,
-  kVertices = 10,
-  kTriangleCorners = 11,
-  kFaces = 13
-};
-constexpr std::size_t kLumps = 17;
-constexpr std::size_t kHeaderSize = 8 + 8 * kLumps;
-
-// As they lie in the file.
-struct FileShader {
-  std::array<char, 64> name;
-  std::uint32_t surface_flags;
-  std::uint32_t content_flags;
-};
-struct FileModel {
-  std::array<float, 6> box;
-  std::int32_t first_face, face_count;
-  std::int32_t first_brush, brush_count;
-};
-struct FileVertex {
-  std::array<float, 3> position;
-  std::array<float, 2> uv;
-  std::array<float, 2> light_uv;
-  std::array<float, 3> normal;
-  std::array<std::uint8_t, 4> colour;
-};
-struct FileFace {
-  std::int32_t shader, fog, kind;
-  std::int32_t first_vertex, vertex_count;
-  std::int32_t first_corner, corner_count;
-  std::array<std::int32_t, 5> light_map;
-  std::array<float, 9> light_axes;
-  std::array<float, 3> normal;
-  std::array<std::int32_t, 2> patch_size;
-};
-static_assert(sizeof(FileShader) == 72 && sizeof(FileModel) == 40 && sizeof(FileVertex) == 44 &&
-              sizeof(FileFace) == 104);
 
 constexpr std::int32_t kPolygon = 1, kPatch = 2, kMesh = 3;
 constexpr std::uint32_t kIsSky = 0x4, kIsHint = 0x100, kIsSkipped = 0x200, kIsNotDrawn = 0x80;
@@ -88,81 +45,24 @@ std::string printable(std::string name) {
   return name;
 }
 
-[[noreturn]] void damaged(const std::string& what) {
-  throw std::runtime_error("is a damaged map: " + what);
-}
-
-/// The tables of the file.
-class MapTables {
- public:
-  explicit MapTables(const Bytes& bytes) : bytes_(std::as_bytes(std::span(bytes))) {
-    if (bytes_.size() < kHeaderSize || std::memcmp(bytes_.data(), "IBSP", 4) != 0)
-      throw std::runtime_error("is no map of Quake III Arena: it does not begin with IBSP");
-    const auto version = load<std::int32_t>(bytes_.data() + 4);
-    if (version != 46 && version != 47)
-      throw std::runtime_error(fmt::format(
-          "is a map of version {}; those of Quake III Arena (46, 47) are read", version));
-  }
-
-  template <class Row>
-  [[nodiscard]] std::vector<Row> rows(Lump lump) const {
-    const std::span<const std::byte> part = bytes_of(lump);
-    std::vector<Row> result(part.size() / sizeof(Row));
-    if (!result.empty()) std::memcpy(result.data(), part.data(), result.size() * sizeof(Row));
-    return result;
-  }
-
-  [[nodiscard]] std::string_view text(Lump lump) const {
-    const std::span<const std::byte> part = bytes_of(lump);
-    const std::string_view all(reinterpret_cast<const char*>(part.data()), part.size());
-    return all.substr(0, all.find('\0'));
-  }
-
- private:
-  [[nodiscard]] std::span<const std::byte> bytes_of(Lump lump) const {
-    const std::byte* entry = bytes_.data() + 8 + 8 * static_cast<std::size_t>(lump);
-    const auto offset = load<std::uint32_t>(entry), size = load<std::uint32_t>(entry + 4);
-    if (offset > bytes_.size() || size > bytes_.size() - offset)
-      damaged(fmt::format("its table {} ends behind the file", static_cast<std::size_t>(lump)));
-    return bytes_.subspan(offset, size);
-  }
-
-  std::span<const std::byte> bytes_;
-};
-
-/// `count` items from `first` on; an error where there are fewer.
-template <class Item>
-std::span<const Item> range_of(const std::vector<Item>& all, std::int32_t first, std::int32_t count,
-                               const char* what) {
-  if (first < 0 || count < 0 ||
-      static_cast<std::size_t>(first) + static_cast<std::size_t>(count) > all.size())
-    damaged(fmt::format("it has no {} {} to {}", what, first, std::int64_t{first} + count - 1));
-  return std::span(all).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count));
-}
-
-Quake3Vertex vertex_of(const FileVertex& vertex) {
+Quake3Vertex vertex_of(const Quake3VertexRow& vertex) {
   const auto& [x, y, z] = vertex.position;
   return {{x * kMetresPerUnit, y * kMetresPerUnit, z * kMetresPerUnit}, vertex.uv, vertex.normal};
 }
 
 class MapReader {
  public:
-  explicit MapReader(const MapTables& tables)
-      : entities_(parse_quake3_entities(tables.text(Lump::kEntities))),
-        shaders_(tables.rows<FileShader>(Lump::kShaders)),
-        models_(tables.rows<FileModel>(Lump::kModels)),
-        vertices_(tables.rows<FileVertex>(Lump::kVertices)),
-        corners_(tables.rows<std::int32_t>(Lump::kTriangleCorners)),
-        faces_(tables.rows<FileFace>(Lump::kFaces)) {}
+  explicit MapReader(const Quake3Tables& tables)
+      : tables_(tables), entities_(parse_quake3_entities(tables.entities)) {}
 
   [[nodiscard]] Model read() {
-    for (const FileShader& shader : shaders_) {
+    for (const Quake3ShaderRow& shader : tables_.shaders) {
       ModelMaterial& material = result_.materials.emplace_back();
       material.name =
           printable({shader.name.data(), strnlen(shader.name.data(), shader.name.size())});
       material.ignored.emplace_back("baked light");
     }
-    if (models_.empty()) damaged("it has no world");
+    if (tables_.models.empty()) fail_as_damaged_map("it has no world");
     add_model(0, "worldspawn", Eigen::Vector3d::Zero());
     for (const Quake3Entity& entity : entities_) add_entity(entity);
     return std::move(result_);
@@ -179,8 +79,9 @@ class MapReader {
     if (model.size() < 2 || model.front() != '*') return;
     const std::size_t index = std::strtoul(model.c_str() + 1, nullptr, 10);
     // The world itself is no entity's.
-    if (index == 0 || index >= models_.size())
-      damaged(fmt::format("its entity '{}' is of model {}, which it has not", kind, model));
+    if (index == 0 || index >= tables_.models.size())
+      fail_as_damaged_map(
+          fmt::format("its entity '{}' is of model {}, which it has not", kind, model));
     add_model(index, fmt::format("{} {}", kind, model),
               entity.vector("origin") * double{kMetresPerUnit});
   }
@@ -205,12 +106,14 @@ class MapReader {
   }
 
   void add_model(std::size_t index, const std::string& name, const Eigen::Vector3d& origin) {
-    const FileModel& model = models_[index];
+    const Quake3ModelRow& model = tables_.models[index];
     std::map<std::int32_t, ModelPart> parts;  // by shader
-    for (const FileFace& face : range_of(faces_, model.first_face, model.face_count, "faces")) {
-      if (face.shader < 0 || static_cast<std::size_t>(face.shader) >= shaders_.size())
-        damaged(fmt::format("a face is of shader {}, which it has not", face.shader));
-      const std::uint32_t flags = shaders_[static_cast<std::size_t>(face.shader)].surface_flags;
+    for (const Quake3FaceRow& face :
+         rows_of(tables_.faces, model.first_face, model.face_count, "faces")) {
+      if (face.shader < 0 || static_cast<std::size_t>(face.shader) >= tables_.shaders.size())
+        fail_as_damaged_map(fmt::format("a face is of shader {}, which it has not", face.shader));
+      const std::uint32_t flags =
+          tables_.shaders[static_cast<std::size_t>(face.shader)].surface_flags;
       if ((flags & (kIsSky | kIsHint | kIsSkipped | kIsNotDrawn)) != 0) continue;
       add_face(face, parts[face.shader]);
     }
@@ -230,24 +133,26 @@ class MapReader {
     }
   }
 
-  void add_face(const FileFace& face, ModelPart& part) {
+  void add_face(const Quake3FaceRow& face, ModelPart& part) {
     if (face.kind != kPolygon && face.kind != kMesh && face.kind != kPatch) return;  // flares
-    const auto vertices = range_of(vertices_, face.first_vertex, face.vertex_count, "vertices");
+    const auto vertices =
+        rows_of(tables_.vertices, face.first_vertex, face.vertex_count, "vertices");
     if (face.kind == kPatch)
       add_patch(face, vertices, part);
     else
       add_triangles(face, vertices, part);
   }
 
-  void add_triangles(const FileFace& face, std::span<const FileVertex> vertices, ModelPart& part) {
-    const auto corners = range_of(corners_, face.first_corner, face.corner_count, "corners");
+  void add_triangles(const Quake3FaceRow& face, std::span<const Quake3VertexRow> vertices,
+                     ModelPart& part) {
+    const auto corners = rows_of(tables_.corners, face.first_corner, face.corner_count, "corners");
     // Corners count as well: many triangles may share few vertices.
     const std::uint32_t first = first_of(vertices.size() + corners.size(), part);
-    for (const FileVertex& vertex : vertices) add_vertex(vertex_of(vertex), part);
+    for (const Quake3VertexRow& vertex : vertices) add_vertex(vertex_of(vertex), part);
     for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
       for (std::size_t k = i; k < i + 3; ++k)
         if (corners[k] < 0 || static_cast<std::size_t>(corners[k]) >= vertices.size())
-          damaged(fmt::format("a face has no corner {}", corners[k]));
+          fail_as_damaged_map(fmt::format("a face has no corner {}", corners[k]));
       add_triangle({first + static_cast<std::uint32_t>(corners[i]),
                     first + static_cast<std::uint32_t>(corners[i + 1]),
                     first + static_cast<std::uint32_t>(corners[i + 2])},
@@ -255,14 +160,15 @@ class MapReader {
     }
   }
 
-  void add_patch(const FileFace& face, std::span<const FileVertex> vertices, ModelPart& part) {
+  void add_patch(const Quake3FaceRow& face, std::span<const Quake3VertexRow> vertices,
+                 ModelPart& part) {
     const auto [width, height] = face.patch_size;
     if (width < 3 || height < 3 || width % 2 == 0 || height % 2 == 0 ||
         std::int64_t{width} * height != static_cast<std::int64_t>(vertices.size()))
-      damaged(fmt::format("a curved face has {} x {} control points", width, height));
+      fail_as_damaged_map(fmt::format("a curved face has {} x {} control points", width, height));
     std::vector<Quake3Vertex> control;
     control.reserve(vertices.size());
-    for (const FileVertex& vertex : vertices) control.push_back(vertex_of(vertex));
+    for (const Quake3VertexRow& vertex : vertices) control.push_back(vertex_of(vertex));
     // Counted before they are made.
     const std::uint32_t first = first_of(
         divided_count(static_cast<std::size_t>(width), static_cast<std::size_t>(height)), part);
@@ -305,12 +211,8 @@ class MapReader {
     part.triangles.push_back(corners);
   }
 
+  const Quake3Tables& tables_;
   std::vector<Quake3Entity> entities_;
-  std::vector<FileShader> shaders_;
-  std::vector<FileModel> models_;
-  std::vector<FileVertex> vertices_;
-  std::vector<std::int32_t> corners_;
-  std::vector<FileFace> faces_;
   std::size_t vertices_added_ = 0;
   Model result_;
 };
@@ -323,6 +225,6 @@ bool is_quake3_archive(const std::filesystem::path& file) {
   return lower_ending_of(file) == ".pk3";
 }
 
-Model read_quake3_map(const Bytes& bytes) { return MapReader(MapTables(bytes)).read(); }
+Model read_quake3_map(const Bytes& bytes) { return MapReader(read_quake3_tables(bytes)).read(); }
 
 }  // namespace saccade

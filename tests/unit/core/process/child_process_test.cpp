@@ -7,23 +7,17 @@
 
 #include <vector>
 
+#include "tests/support/child_end.h"
 #include "tests/support/command.h"
 #include "tests/support/error_of.h"
 
 namespace saccade {
 namespace {
 
+using testing::end_of;
 using ::testing::HasSubstr;
 using testing::read_file;
 using testing::TemporaryFolder;
-
-ChildEnd end_of(ChildProcess& process) {
-  pollfd ended{process.descriptor(), POLLIN, 0};
-  ::poll(&ended, 1, 60000);
-  const auto end = process.poll_end();
-  EXPECT_TRUE(end);
-  return end.value_or(ChildEnd{});
-}
 
 TEST(ChildProcess, SaysHowItEndedAndWhatItTook) {
   const TemporaryFolder folder;
