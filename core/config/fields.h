@@ -195,7 +195,7 @@ Rule Fields::choice(std::string_view key, E& target, const Names<std::type_ident
     if (meaning == target) current = texts.size();
     texts.push_back(text);
   }
-  target = names[choose(key, std::move(texts), current, help)].second;
+  target = names[choose(key, texts, current, help)].second;
   return {*this, name_of(key), nullptr};
 }
 

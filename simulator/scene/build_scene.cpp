@@ -165,7 +165,7 @@ Scene build_scene(const SceneOptions& options, ColourChannel channel) {
   add_world_parts(world, builder);
   if (items.empty() && world.parts.empty()) throw InputError("scene.meshes", "names no mesh");
   if (options.lighting == Lighting::kLambertian) {
-    builder.light(options.ambient, std::move(lights), options.ambient_flicker);
+    builder.light(options.ambient, lights, options.ambient_flicker);
     if (options.environment_light)
       builder.light_from_around(read_environment(options, channel, importer.remarks()));
   }

@@ -50,6 +50,7 @@ std::string texture_sizes(const Mesh& mesh) {
   std::map<std::pair<int, int>, int> counts;
   for (const Texture* texture : textures) ++counts[{-texture->width(), -texture->height()}];
   std::vector<std::string> sizes;
+  sizes.reserve(counts.size());
   for (const auto& [size, count] : counts)
     sizes.push_back(fmt::format("{} x {}{}", -size.first, -size.second,
                                 count > 1 ? fmt::format(" ({})", count) : ""));

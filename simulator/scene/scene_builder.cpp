@@ -166,7 +166,7 @@ std::size_t SceneBuilder::add_to(Body& body, const Mesh& mesh,
   return kept;
 }
 
-void SceneBuilder::light(double ambient, std::vector<LightOptions> lights,
+void SceneBuilder::light(double ambient, const std::vector<LightOptions>& lights,
                          const std::optional<FlickerOptions>& ambient_flicker) {
   is_lit_ = true;
   ambient_ = ambient;
@@ -226,11 +226,13 @@ PreparedTriangles SceneBuilder::number_triangles() {
       for (TriangleSurface& surface : triangles.surfaces)
         surface.body = static_cast<std::uint32_t>(index - 1);
     const auto first = static_cast<TriangleId>(all.surfaces.size());
-    std::vector<Corners> corners = std::move(triangles.corners);
-    std::vector<CornerIndices> indices = std::move(triangles.corner_indices);
-    all.append(std::move(triangles));
-    triangles.corners = std::move(corners);
-    triangles.corner_indices = std::move(indices);
+    PreparedTriangles moved = std::move(triangles);
+    triangles = {};
+    triangles.corners = std::move(moved.corners);
+    triangles.corner_indices = std::move(moved.corner_indices);
+    moved.corners.clear();
+    moved.corner_indices.clear();
+    all.append(std::move(moved));
     return first;
   };
   for (std::size_t i = 0; i < bodies_.size(); ++i)

@@ -46,7 +46,7 @@ class SceneBuilder {
                            const InstanceLabel& label = {});
 
   /// Lambertian surfaces under ambient light and lights; without it the albedo is the radiance.
-  void light(double ambient, std::vector<LightOptions> lights,
+  void light(double ambient, const std::vector<LightOptions>& lights,
              const std::optional<FlickerOptions>& ambient_flicker = std::nullopt);
   /// Of a scene with light(), that of its surroundings as well.
   void light_from_around(const EnvironmentLight& environment) { environment_ = environment; }

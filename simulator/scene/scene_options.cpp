@@ -32,6 +32,44 @@ void check_classes(config::Fields& fields, const SceneOptions& options) {
   fields.expect(class_names(options).size() <= kMaxClasses, "meshes", "name more than 255 classes");
 }
 
+/// The keys of a scene that lights light.
+void describe_lights(config::Fields& fields, SceneOptions& options) {
+  fields
+      .value("ambient", options.ambient, "Radiance of a white surface in the ambient light alone.")
+      .at_least(0);
+  fields.section("ambient_flicker", options.ambient_flicker,
+                 "Flicker of the ambient light: in a room, that of the lamps whose light the walls "
+                 "scatter.");
+  fields.section(
+      "environment_light", options.environment_light,
+      "Light of the surroundings on all surfaces, by their normals and without shadows, "
+      "in spherical harmonics up to second order. By default there is none: the background is "
+      "only seen.");
+  fields.list("lights", options.lights,
+              "Point lights, spots, directional lights and area lights, at most 64, each emitter "
+              "of an area light counted.");
+  fields.expect(emitter_count(options.lights) <= kMaxLights, "lights",
+                "must be at most 64, with every emitter of area lights counted");
+  fields.value("normal_maps", options.normal_maps,
+               "Whether the normal maps of mesh files bend the normals that light falls on. "
+               "Normals of labels stay those of the triangles.");
+  fields.value(
+      "gloss", options.gloss,
+      "Whether surfaces of glTF files mirror the lights, by their factors of roughness and "
+      "metalness: one highlight per light, that moves with the camera. Surroundings are "
+      "not mirrored.");
+  fields.value("lights_from_meshes", options.lights_from_meshes,
+               "Whether the lights of glTF files (KHR_lights_punctual) light the scene as well, "
+               "where their meshes stand. Those of meshes with a trajectory do not.");
+  if (options.lights_from_meshes)
+    fields
+        .value("light_scale", options.light_scale,
+               "Intensity of a light of a glTF file per candela, of a directional one per lux. By "
+               "default 1 / pi: then radiance is luminance in cd/m^2, as a white surface under E "
+               "lux has E / pi of it, and as the files state emission.")
+        .above(0);
+}
+
 }  // namespace
 
 std::vector<std::string> class_names(const SceneOptions& options) {
@@ -159,45 +197,7 @@ void describe(config::Fields& fields, SceneOptions& options) {
     for (const MeshOptions& mesh : options.meshes)
       fields.expect(!mesh.gloss, "meshes",
                     "must not state 'gloss' without lights to mirror: state lighting: lambertian");
-  if (options.lighting == Lighting::kLambertian) {
-    fields
-        .value("ambient", options.ambient,
-               "Radiance of a white surface in the ambient light alone.")
-        .at_least(0);
-    fields.section(
-        "ambient_flicker", options.ambient_flicker,
-        "Flicker of the ambient light: in a room, that of the lamps whose light the walls "
-        "scatter.");
-    fields.section(
-        "environment_light", options.environment_light,
-        "Light of the surroundings on all surfaces, by their normals and without shadows, "
-        "in spherical harmonics up to second order. By default there is none: the background is "
-        "only seen.");
-    fields.list("lights", options.lights,
-                "Point lights, spots, directional lights and area lights, at most 64, each emitter "
-                "of an area light counted.");
-    fields.expect(emitter_count(options.lights) <= kMaxLights, "lights",
-                  "must be at most 64, with every emitter of area lights counted");
-    fields.value("normal_maps", options.normal_maps,
-                 "Whether the normal maps of mesh files bend the normals that light falls on. "
-                 "Normals of labels stay those of the triangles.");
-    fields.value(
-        "gloss", options.gloss,
-        "Whether surfaces of glTF files mirror the lights, by their factors of roughness and "
-        "metalness: one highlight per light, that moves with the camera. Surroundings are "
-        "not mirrored.");
-    fields.value("lights_from_meshes", options.lights_from_meshes,
-                 "Whether the lights of glTF files (KHR_lights_punctual) light the scene as well, "
-                 "where their meshes stand. Those of meshes with a trajectory do not.");
-    if (options.lights_from_meshes)
-      fields
-          .value(
-              "light_scale", options.light_scale,
-              "Intensity of a light of a glTF file per candela, of a directional one per lux. By "
-              "default 1 / pi: then radiance is luminance in cd/m^2, as a white surface under E "
-              "lux has E / pi of it, and as the files state emission.")
-          .above(0);
-  }
+  if (options.lighting == Lighting::kLambertian) describe_lights(fields, options);
 }
 
 }  // namespace saccade

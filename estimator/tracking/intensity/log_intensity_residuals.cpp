@@ -96,10 +96,11 @@ void LogIntensityResiduals::draw_view(const Rigid3& map_from_camera) {
 void LogIntensityResiduals::read_pixels_from_map(float sigma) {
   pixels_.reset();
   const PinholeCamera& camera = view_.camera();
+  std::size_t pixel = 0;
   for (int y = 0; y < camera.height; ++y)
-    for (int x = 0; x < camera.width; ++x)
+    for (int x = 0; x < camera.width; ++x, ++pixel)
       if (const auto value = view_.log_intensity(view_.undistorted(x, y)))
-        pixels_.set(static_cast<std::size_t>(y * camera.width + x), *value, sigma * sigma);
+        pixels_.set(pixel, *value, sigma * sigma);
 }
 
 void LogIntensityResiduals::load(std::span<const Event> events, TimeNs t_ns, double jump_s,
@@ -184,7 +185,8 @@ void LogIntensityResiduals::add_burst(const Burst& burst, float jump_s,
   add(observation, *at, is_step ? kNotCorrected : static_cast<std::uint32_t>(pixel));
 }
 
-bool LogIntensityResiduals::observe_step(int polarity, std::size_t pixel, const MapSample& at,
+bool LogIntensityResiduals::observe_step(std::int8_t polarity, std::size_t pixel,
+                                         const MapSample& at,
                                          const EventResidualBatch::Motion& motion,
                                          LogIntensityObservation& observation) {
   if (!(step_weight_ > 0)) return false;

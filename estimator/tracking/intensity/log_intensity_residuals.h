@@ -82,16 +82,16 @@ class LogIntensityResiduals {
   struct Burst {
     std::uint16_t x = 0, y = 0;
     int events = 0;
-    int polarity = 0;  ///< of the last
-    float before = 0;  ///< what it saw before, most likely
-    float sum = 0;     ///< of the log intensities at its events
+    std::int8_t polarity = 0;  ///< of the last
+    float before = 0;          ///< what it saw before, most likely
+    float sum = 0;             ///< of the log intensities at its events
     float sum_s = 0, first_s = 0, last_s = 0;
   };
   void add_to_burst(const Event& event, float time_s);
   void add_burst(const Burst& burst, float jump_s, const EventResidualBatch::Motion& motion);
   /// Makes an observation that of a step of the map's, by so much as a single event may be one, and
   /// the pixel's value what it is behind it. False where it is none.
-  [[nodiscard]] bool observe_step(int polarity, std::size_t pixel, const MapSample& at,
+  [[nodiscard]] bool observe_step(std::int8_t polarity, std::size_t pixel, const MapSample& at,
                                   const EventResidualBatch::Motion& motion,
                                   LogIntensityObservation& observation);
   /// What a pixel without an event sees, at the time of the pose.

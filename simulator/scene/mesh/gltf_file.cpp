@@ -344,7 +344,7 @@ Bytes GltfFile::encoded(json document) const {
   }
 
   const std::string text = document.dump(-1, ' ', false, json::error_handler_t::replace);
-  const Bytes content(text.begin(), text.end());
+  Bytes content(text.begin(), text.end());
   if (!is_binary_) return content;
   Bytes chunks;
   append_chunk(chunks, kGltfJsonChunk, content, ' ');

@@ -144,10 +144,11 @@ class Flattener {
         remarks_.ignore("vertex colours that leave emission as it is, under lights", source_name_);
       return part.material;
     }
-    const auto& [r, g, b, a] = part.colours.front();
-    const bool is_uniform = std::ranges::all_of(part.colours, [&](const auto& colour) {
-      return colour[0] == r && colour[1] == g && colour[2] == b;
+    const std::array<float, 4>& first = part.colours.front();
+    const bool is_uniform = std::ranges::all_of(part.colours, [&first](const auto& colour) {
+      return std::equal(colour.begin(), colour.begin() + 3, first.begin());
     });
+    const auto& [r, g, b, a] = first;
     if (is_uniform && r == 1 && g == 1 && b == 1) return part.material;
     if (!is_uniform || imported.emission > 0 || imported.material.self_light > 0) {
       remarks_.ignore("vertex colours over textures", source_name_);
