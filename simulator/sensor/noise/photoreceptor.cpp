@@ -1,10 +1,8 @@
 #include "simulator/sensor/noise/photoreceptor.h"
 
-#include <algorithm>
 #include <numbers>
 
 #include "core/config/fields.h"
-#include "simulator/sensor/noise/radiance.h"
 
 namespace saccade {
 
@@ -17,23 +15,19 @@ void describe(config::Fields& fields, BandwidthOptions& options) {
   fields.value("order", options.order, "Number of poles of the low pass: 1 or 2.").range(1, 2);
 }
 
-double PhotoreceptorFilter::cutoff_at(double radiance) const {
-  const double brightness =
-      (radiance + options_.dark_radiance) / (options_.bright_radiance + options_.dark_radiance);
-  return std::min(options_.max_cutoff_hz, options_.cutoff_hz * brightness);
-}
+PhotoreceptorFilter::PhotoreceptorFilter(const BandwidthOptions& options, double log_eps)
+    : options_(options),
+      log_eps_(log_eps),
+      rate_per_radiance_(2 * std::numbers::pi * options.cutoff_hz /
+                         (options.bright_radiance + options.dark_radiance)),
+      max_rate_(2 * std::numbers::pi * options.max_cutoff_hz) {}
 
 double PhotoreceptorFilter::cutoff_hz(double log_intensity) const {
-  return cutoff_at(radiance_from_log(log_intensity, log_eps_));
+  return rate_at(radiance_from_log(log_intensity, log_eps_)) / (2 * std::numbers::pi);
 }
 
 double PhotoreceptorFilter::memory_s(double least) const {
-  return kMemory / (2 * std::numbers::pi * cutoff_at(std::max(least, 0.0)));
-}
-
-FilteredPiece PhotoreceptorFilter::piece(const FilterState& state, const LinearPiece& input) const {
-  const double cutoff = cutoff_hz(0.5 * (input.start + input.end));
-  return {state, input, 2 * std::numbers::pi * cutoff, options_.order};
+  return kMemory / rate_at(std::max(least, 0.0));
 }
 
 }  // namespace saccade

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
+
 #include "simulator/sensor/noise/filtered_piece.h"
+#include "simulator/sensor/noise/radiance.h"
 
 namespace saccade {
 namespace config {
@@ -33,8 +36,7 @@ void describe(config::Fields& fields, BandwidthOptions& options);
 class PhotoreceptorFilter {
  public:
   /// `log_eps`: eps of L = ln(eps + I).
-  PhotoreceptorFilter(const BandwidthOptions& options, double log_eps)
-      : options_(options), log_eps_(log_eps) {}
+  PhotoreceptorFilter(const BandwidthOptions& options, double log_eps);
 
   [[nodiscard]] bool on() const { return options_.on(); }
 
@@ -49,15 +51,26 @@ class PhotoreceptorFilter {
     return {log_intensity, log_intensity};
   }
   /// The output over a piece that `state` enters; on() must hold.
-  [[nodiscard]] FilteredPiece piece(const FilterState& state, const LinearPiece& input) const;
+  [[nodiscard]] FilteredPiece piece(const FilterState& state, const LinearPiece& input) const {
+    return piece(state, input, radiance_from_log(0.5 * (input.start + input.end), log_eps_));
+  }
+  /// The same where the radiance of its middle is known.
+  [[nodiscard]] FilteredPiece piece(const FilterState& state, const LinearPiece& input,
+                                    double middle_radiance) const {
+    return {state, input, rate_at(middle_radiance), options_.order};
+  }
 
  private:
   static constexpr double kMemory = 10;
 
-  [[nodiscard]] double cutoff_at(double radiance) const;
+  /// 2 pi f_c [1/s].
+  [[nodiscard]] double rate_at(double radiance) const {
+    return std::min(max_rate_, rate_per_radiance_ * (radiance + options_.dark_radiance));
+  }
 
   BandwidthOptions options_;
   double log_eps_;
+  double rate_per_radiance_, max_rate_;
 };
 
 }  // namespace saccade

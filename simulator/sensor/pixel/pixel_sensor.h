@@ -68,7 +68,12 @@ class PixelSensor {
   /// spontaneous candidate, with the refractory period after every event.
   template <class AnyInterval>
   void sense_interval(AnyInterval& interval, const PixelNoise& noise, NoisyState& noisy);
-  void sense_piece(const Sample& lo, const Sample& hi, const PixelNoise& noise, NoisyState& noisy);
+  void sense_piece(const Sample& lo, const Sample& hi, const PixelNoise& noise, NoisyState& noisy) {
+    const LinearPiece input{lo.t_s, hi.t_s, lo.log_intensity, hi.log_intensity};
+    sense_piece(input, noise.filter.piece(noisy.filter, input), noise, noisy);
+  }
+  void sense_piece(const LinearPiece& input, const FilteredPiece& piece, const PixelNoise& noise,
+                   NoisyState& noisy);
   /// sense_filtered() by halves.
   void divide_filtered(const Sample& lo, const Sample& hi, const PixelNoise& noise,
                        NoisyState& noisy, int depth = 0);
@@ -278,9 +283,14 @@ void PixelSensor<Signal, Emit>::follow_lines(Lines& lines, const Sample& lo, con
         noisy.filter = PhotoreceptorFilter::settled(now.log_intensity);
       }
     }
+    const double radiance = lines.radiance();
     lines.advance(hi.u, least_u);
     const Sample next = signal_.at_end(lines, hi);
-    sense_piece(now, next, noise, noisy);
+    const LinearPiece input{now.t_s, next.t_s, now.log_intensity, next.log_intensity};
+    // I where ln(eps + I) is half way.
+    const double middle_radiance =
+        std::sqrt((log_eps_ + radiance) * (log_eps_ + lines.radiance())) - log_eps_;
+    sense_piece(input, noise.filter.piece(noisy.filter, input, middle_radiance), noise, noisy);
     now = next;
   }
 }
@@ -353,13 +363,11 @@ class PixelSensor<Signal, Emit>::FilteredInterval {
 };
 
 template <class Signal, class Emit>
-void PixelSensor<Signal, Emit>::sense_piece(const Sample& lo, const Sample& hi,
+void PixelSensor<Signal, Emit>::sense_piece(const LinearPiece& input, const FilteredPiece& piece,
                                             const PixelNoise& noise, NoisyState& noisy) {
-  const LinearPiece input{lo.t_s, hi.t_s, lo.log_intensity, hi.log_intensity};
-  const FilteredPiece piece = noise.filter.piece(noisy.filter, input);
   noisy.filter = piece.end_state();
   if (proves_no_event(piece, input, noisy)) return;
-  FilteredInterval interval(*this, piece, lo.t_s, hi.t_s);
+  FilteredInterval interval(*this, piece, input.t0_s, input.t1_s);
   sense_interval(interval, noise, noisy);
 }
 

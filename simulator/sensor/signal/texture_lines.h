@@ -39,24 +39,37 @@ class TextureLines {
   }
 
   [[nodiscard]] double u() const { return u_; }
+  /// The radiance there.
+  [[nodiscard]] double radiance() const { return value_; }
   void go_to(double u) {
     u_ = u;
     cell_ = cells_.at(u);
     value_ = value_at(cell_, u);
   }
 
-  /// How far the path goes on, up to `to`, through cells whose radiances are all within the open
-  /// interval `band`, and the least of those.
+  /// How far the path goes on, up to `to`, with radiances within the open interval `band` for
+  /// certain, and the least of those.
   struct Run {
     double end;
     double least;
   };
   [[nodiscard]] Run run_within(const Interval& band, double to) const {
     const Interval texels{band.low / factor_, band.high / factor_};
-    const int outside = cells_.next_outside(cell_, texels);
-    double least = std::numeric_limits<double>::infinity();
-    for (int k = cell_; k < outside; ++k) least = std::min(least, cells_.low(k));
-    return {outside == cell_ ? u_ : std::min(cells_.end(outside - 1), to), factor_ * least};
+    Run run{u_, std::numeric_limits<double>::infinity()};
+    for (int cell = cell_; cell < cells_.count() && run.end < to; ++cell) {
+      const int outside = cells_.next_outside(cell, texels);
+      for (; cell < outside; ++cell) {
+        run.least = std::min(run.least, factor_ * cells_.low(cell));
+        run.end = std::min(cells_.end(cell), to);
+      }
+      if (cell == cells_.count() || run.end >= to) break;
+      // A cell with a texel outside: the path may leave the band in its midst, or not at all.
+      const Run part = run_within_cell(cell, run.end, band, to);
+      run.least = std::min(run.least, part.least);
+      run.end = part.end;
+      if (run.end < std::min(cells_.end(cell), to)) break;
+    }
+    return run;
   }
 
   /// Goes on to the end of a line: `to` at most, and no less than `least` further, unless `to` is
@@ -142,15 +155,68 @@ class TextureLines {
           along_x(corners[1] - corners[0]),
           along_y(corners[2] - corners[0]),
           twist(corners[3] - corners[2] - along_x) {}
+    /// Of the changes per texel, in any direction.
+    [[nodiscard]] double steepest() const {
+      return std::abs(along_x) + std::abs(along_y) + 2 * std::abs(twist);
+    }
     [[nodiscard]] double at(double x, double y) const {
       return corner + x * along_x + y * (along_y + twist * x);
     }
   };
 
+  /// As run_within(), in a cell from `from` on. Along the chord the radiance is a parabola.
+  [[nodiscard]] Run run_within_cell(int cell, double from, const Interval& band, double to) const {
+    const double end = std::min(cells_.end(cell), to);
+    const double length = end - from;
+    const Bilinear texels(cells_.corners(cell));
+    const double x = path_.x.at(from) - static_cast<double>(cells_.i(cell));
+    const double y = path_.y.at(from) - static_cast<double>(cells_.j(cell));
+    const double p = path_.x.at(end) - static_cast<double>(cells_.i(cell)) - x;
+    const double q = path_.y.at(end) - static_cast<double>(cells_.j(cell)) - y;
+    const Parabola along{factor_ * texels.at(x, y),
+                         factor_ * (p * (texels.along_x + texels.twist * y) +
+                                    q * (texels.along_y + texels.twist * x)),
+                         factor_ * texels.twist * p * q};
+    const double margin = factor_ * path_bending() * texels.steepest() * length * length;
+    const double low = band.low + margin;
+    const double high = band.high - margin;
+    if (!(along.start > low && along.start < high)) return {from, along.start};
+    const double part = std::min({1.0, along.first_at(low), along.first_at(high)});
+    return {part < 1 ? from + part * length : end, along.least_up_to(part) - margin};
+  }
+
+  /// start + rise s + bend s^2.
+  struct Parabola {
+    double start, rise, bend;
+
+    [[nodiscard]] double at(double s) const { return start + s * (rise + s * bend); }
+    /// The least s > 0 at which it has a value that it does not start with; infinite where it never
+    /// has.
+    [[nodiscard]] double first_at(double value) const {
+      constexpr double kNever = std::numeric_limits<double>::infinity();
+      const double missing = start - value;
+      const double discriminant = rise * rise - 4 * bend * missing;
+      if (!(discriminant >= 0)) return kNever;
+      const double sum = -0.5 * (rise + std::copysign(std::sqrt(discriminant), rise));
+      const double one = sum / bend;
+      const double other = missing / sum;
+      return std::min(one > 0 ? one : kNever, other > 0 ? other : kNever);
+    }
+    [[nodiscard]] double least_up_to(double s) const {
+      const double vertex = -0.5 * rise / bend;
+      const double ends = std::min(start, at(s));
+      return bend > 0 && vertex > 0 && vertex < s ? at(vertex) : ends;
+    }
+  };
+
+  /// How far the path strays from a chord, by the square of its length [texel].
+  [[nodiscard]] double path_bending() const {
+    return 0.125 * std::max(path_.x.second_derivative_bound(), path_.y.second_derivative_bound());
+  }
+
   /// Of all cells, as if the path went all the way through them.
   void find_knots() {
-    const double bending =
-        0.125 * std::max(path_.x.second_derivative_bound(), path_.y.second_derivative_bound());
+    const double bending = path_bending();
     double u0 = cells_.start();
     double x0 = path_.x.at(u0);
     double y0 = path_.y.at(u0);
@@ -163,11 +229,9 @@ class TextureLines {
       values_[k] = factor_ * texels.at(x1 - static_cast<double>(cells_.i(cell)),
                                        y1 - static_cast<double>(cells_.j(cell)));
       // Along the chord the bilinear function is a parabola; the path departs from the chord.
-      const double steepest =
-          std::abs(texels.along_x) + std::abs(texels.along_y) + 2 * std::abs(texels.twist);
       const double length = std::max(u1 - u0, kShortest);
       const double bend = 0.25 * std::abs(texels.twist * (x1 - x0) * (y1 - y0));
-      bends_[k] = factor_ * (bend / (length * length) + bending * steepest);
+      bends_[k] = factor_ * (bend / (length * length) + bending * texels.steepest());
       u0 = u1;
       x0 = x1;
       y0 = y1;

@@ -126,7 +126,8 @@ class TextureSignal {
   }
   /// Where a line has come to, on the way to `to`.
   [[nodiscard]] Sample at_end(const TextureLines& line, const Sample& to) const {
-    return line.u() >= to.u ? to : evaluate(path_.time_s(line.u()), line.u());
+    if (line.u() >= to.u) return to;
+    return {path_.time_s(line.u()), log_intensity(line.radiance(), log_eps_), line.u()};
   }
   [[nodiscard]] double time_s(double u) const { return path_.time_s(u); }
   [[nodiscard]] double fraction(double t_s) const { return path_.fraction(t_s); }

@@ -110,16 +110,26 @@ TEST(TextureLines, GoOverManyCellsOfASmoothTexture) {
 TEST(TextureLines, KnowHowLongTheTextureStaysWithinABand) {
   const Texture texture(testing::patches(16, 12, 5));
   const Scan scan(texture, 0.7);
-  const double middle = scan.radiance(0.1);
-  const Interval band{middle - 0.15, middle + 0.15};
-  const TextureLines::Run run = scan.lines(0.1).run_within(band, 0.9);
-  EXPECT_GT(run.end, 0.1);
-  EXPECT_LE(run.end, 0.9);
-  for (double u = 0.1; u <= run.end; u += 1e-3) {
-    EXPECT_GT(scan.radiance(u), band.low) << u;
-    EXPECT_LT(scan.radiance(u), band.high) << u;
-    EXPECT_GE(scan.radiance(u), run.least) << u;
-  }
+  int within_a_cell = 0;
+  for (const double from : {0.0, 0.1, 0.25, 0.5})
+    for (const double half : {0.01, 0.03, 0.15}) {
+      const double middle = scan.radiance(from);
+      const Interval band{middle - half, middle + half};
+      const TextureLines::Run run = scan.lines(from).run_within(band, 0.9);
+      EXPECT_GT(run.end, from);
+      EXPECT_LE(run.end, 0.9);
+      for (double u = from; u <= run.end; u += 1e-3) {
+        EXPECT_GT(scan.radiance(u), band.low) << u;
+        EXPECT_LT(scan.radiance(u), band.high) << u;
+        EXPECT_GE(scan.radiance(u), run.least) << u;
+      }
+      // It goes to where the radiance leaves the band, but for the path's bending.
+      if (run.end >= 0.9) continue;
+      ++within_a_cell;
+      const double beyond = scan.radiance(run.end + 0.01);
+      EXPECT_TRUE(beyond <= band.low || beyond >= band.high) << from << " " << half;
+    }
+  EXPECT_GE(within_a_cell, 6);
   const Interval nowhere{2, 3};
   EXPECT_EQ(scan.lines(0.1).run_within(nowhere, 0.9).end, 0.1);
 }
