@@ -2,7 +2,6 @@
 
 #include <sys/mman.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdlib>
 #include <memory>
@@ -48,12 +47,5 @@ struct LargePageAllocator {
 /// For tables of a scene's triangles.
 template <class T>
 using LargeVector = std::vector<T, LargePageAllocator<T>>;
-
-/// Makes room for `count` more items, without giving up that growing costs little per item.
-template <class T>
-void reserve_more(T& items, std::size_t count) {
-  if (items.capacity() - items.size() < count)
-    items.reserve(std::max(items.size() + count, 2 * items.capacity()));
-}
 
 }  // namespace saccade

@@ -408,17 +408,9 @@ double Scene::min_barycentric(const Ray& ray, TriangleId triangle) const {
       });
 }
 
-const TriangleBvh& Scene::State::bvh(std::size_t body) {
-  std::call_once(bvhs_built, [this] {
-    for (const BvhTriangles& source : bvh_triangles) bvhs.emplace_back(source.corners, source.ids);
-    bvh_triangles = {};
-  });
-  return bvhs[body];
-}
-
 bool Scene::is_sole_visible(TriangleId triangle, std::span<const Frustum> frusta) const {
   if (triangle == kNothing)
-    return !state_->bvh(0).may_intersect(frusta, {Eigen::Vector3d::Zero(), 1});
+    return !state_->bvhs.front().may_intersect(frusta, {Eigen::Vector3d::Zero(), 1});
   if (triangle >= state_->surfaces.size() - state_->cutouts.size()) return false;
   const TriangleSurface& surface = state_->surfaces[triangle];
   if (surface.body != kStaticBody) return false;
@@ -430,13 +422,13 @@ bool Scene::is_sole_visible(TriangleId triangle, std::span<const Frustum> frusta
   AffineForm front = surface.plane;
   if (front.at(frusta.front().eye) < 0) front = {-front.gradient, -front.offset};
   front.offset -= kCoplanar * state_->size_m;
-  return !state_->bvh(0).may_intersect(frusta, front);
+  return !state_->bvhs.front().may_intersect(frusta, front);
 }
 
 bool Scene::collect(std::span<const Frustum> frusta, double farthest_m, std::size_t most,
                     std::vector<TriangleId>& found) const {
   found.clear();
-  if (!state_->bvh(0).collect(frusta, nearer_than(farthest_m, frusta.front()), most, found))
+  if (!state_->bvhs.front().collect(frusta, nearer_than(farthest_m, frusta.front()), most, found))
     return false;
   std::vector<Frustum> local(frusta.size());
   for (std::size_t k = 0; k < moving_objects().size(); ++k) {
@@ -446,7 +438,7 @@ bool Scene::collect(std::span<const Frustum> frusta, double farthest_m, std::siz
       for (std::size_t c = 0; c < local[m].corners.size(); ++c)
         local[m].corners[c] = frame.rotation.transpose() * frusta[m].corners[c];
     }
-    if (!state_->bvh(k + 1).collect(local, nearer_than(farthest_m, local.front()), most, found))
+    if (!state_->bvhs[k + 1].collect(local, nearer_than(farthest_m, local.front()), most, found))
       return false;
   }
   return true;

@@ -1,18 +1,25 @@
 #include "simulator/scene/scene_builder.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <future>
 #include <map>
 #include <memory>
-#include <numeric>
 #include <optional>
+#include <span>
 #include <string>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "core/check.h"
 #include "core/error.h"
+#include "core/process/parallel.h"
 #include "simulator/scene/light/area_light.h"
 #include "simulator/scene/mesh/distinct_triangles.h"
 #include "simulator/scene/triangle_setup.h"
@@ -24,9 +31,9 @@ namespace {
 /// single precision resolves there.
 constexpr double kShadowOffset = 1e-6;
 
-Eigen::AlignedBox3f box_of(const PreparedTriangles& triangles) {
+Eigen::AlignedBox3f box_of(std::span<const Corners> triangles) {
   Eigen::AlignedBox3f box;
-  for (const Corners& corners : triangles.corners)
+  for (const Corners& corners : triangles)
     for (const Eigen::Vector3f& corner : corners) box.extend(corner);
   return box;
 }
@@ -51,10 +58,12 @@ class InstanceNumbers {
       : label_(label), mesh_(mesh), object_(object), instances_(instances) {}
 
   [[nodiscard]] std::uint16_t of(const Triangle& triangle) {
-    const auto [known, is_new] =
-        numbers_.try_emplace(label_.splits_nodes ? triangle.node : 0, std::uint16_t{0});
-    if (is_new) known->second = append(triangle.node);
-    return known->second;
+    const std::uint32_t node = label_.splits_nodes ? triangle.node : 0;
+    if (last_ != numbers_.end() && last_->first == node) return last_->second;
+    bool is_new = false;
+    std::tie(last_, is_new) = numbers_.try_emplace(node, std::uint16_t{0});
+    if (is_new) last_->second = append(triangle.node);
+    return last_->second;
   }
 
  private:
@@ -72,6 +81,34 @@ class InstanceNumbers {
   std::uint32_t object_;
   std::vector<SceneInstance>& instances_;
   std::map<std::uint32_t, std::uint16_t> numbers_;  ///< of nodes, or of the whole mesh
+  std::map<std::uint32_t, std::uint16_t>::iterator last_ = numbers_.end();
+};
+
+/// Some triangles of a mesh, as one thread prepares them.
+struct PreparedRange {
+  PreparedTriangles opaque, cut_out;
+  std::vector<std::uint32_t> kept;  ///< which of the mesh, in their order
+
+  [[nodiscard]] PreparedTriangles& target(bool is_cut_out) { return is_cut_out ? cut_out : opaque; }
+};
+
+/// The opaque triangles of a body, or those with cutouts.
+struct BodyPart {
+  /// In pieces: while a table grows, all that is in it moves again and again.
+  std::vector<PreparedTriangles> pieces;
+  std::vector<Corners> corners;               ///< of all, once they are numbered
+  std::vector<CornerIndices> corner_indices;  ///< likewise, where they move
+  TriangleId first = 0;
+
+  [[nodiscard]] bool is_empty() const { return corners.empty() && corner_indices.empty(); }
+  [[nodiscard]] std::size_t size() const {
+    std::size_t sum = 0;
+    for (const PreparedTriangles& piece : pieces) sum += piece.surfaces.size();
+    return sum;
+  }
+  void add(PreparedTriangles&& piece) {
+    if (!piece.surfaces.empty()) pieces.push_back(std::move(piece));
+  }
 };
 
 }  // namespace
@@ -80,28 +117,18 @@ struct SceneBuilder::Body {
   std::optional<Spline> world_from_body;  ///< none: is static
   std::uint32_t object = 0;               ///< of a moving one
   std::shared_ptr<const VertexAnimation> animation;
-  PreparedTriangles opaque, cut_out;
-  TriangleId first_opaque = 0, first_cut_out = 0;
+  BodyPart opaque, cut_out;
 
   [[nodiscard]] bool is_moving() const { return world_from_body || animation; }
-  [[nodiscard]] bool is_empty() const {
-    return opaque.corners.empty() && cut_out.corners.empty() && opaque.corner_indices.empty() &&
-           cut_out.corner_indices.empty();
-  }
+  [[nodiscard]] bool is_empty() const { return opaque.is_empty() && cut_out.is_empty(); }
   [[nodiscard]] Eigen::AlignedBox3f box() const {
-    return animation ? animation->box() : box_of(opaque).merged(box_of(cut_out));
+    return animation ? animation->box() : box_of(opaque.corners).merged(box_of(cut_out.corners));
   }
   [[nodiscard]] AnimatedTriangles animated() const {
-    return {opaque.corner_indices, cut_out.corner_indices, first_opaque, first_cut_out};
+    return {opaque.corner_indices, cut_out.corner_indices, opaque.first, cut_out.first};
   }
-  [[nodiscard]] BvhTriangles occluders() && {
-    BvhTriangles source{std::move(opaque.corners), {}};
-    source.ids.resize(source.corners.size() + cut_out.corners.size());
-    const auto first = source.ids.begin() + static_cast<std::ptrdiff_t>(source.corners.size());
-    std::iota(source.ids.begin(), first, first_opaque);
-    std::iota(first, source.ids.end(), first_cut_out);
-    source.corners.insert(source.corners.end(), cut_out.corners.begin(), cut_out.corners.end());
-    return source;
+  [[nodiscard]] TriangleBvh bvh() const {
+    return TriangleBvh({{opaque.corners, opaque.first}, {cut_out.corners, cut_out.first}});
   }
 };
 
@@ -148,20 +175,40 @@ std::size_t SceneBuilder::add_to(Body& body, const Mesh& mesh,
     textures_.push_back(material.opacity);
     if (material.normal_map) normal_maps_.push_back(material.normal_map);
   }
-  std::size_t kept = 0;
+  const auto is_cut_out = [&mesh](std::uint32_t i) {
+    return mesh.materials[mesh.triangles[i].material].opacity != nullptr;
+  };
+  std::vector<std::uint32_t> distinct;
+  distinct.reserve(mesh.triangles.size());
   DistinctTriangles taken(mesh);
-  body.opaque.reserve_more(mesh.triangles.size());
-  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    const Triangle& triangle = mesh.triangles[i];
-    const bool is_cut_out = mesh.materials[triangle.material].opacity != nullptr;
-    if (!is_cut_out && !taken.insert(i)) continue;
-    PreparedTriangles& target = is_cut_out ? body.cut_out : body.opaque;
-    if (body.animation)
-      setup.add_animated(triangle, target);
-    else if (!setup.add(triangle, target))
-      continue;
-    target.instances.push_back(numbers.of(triangle));
-    ++kept;
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i)
+    if (is_cut_out(i) || taken.insert(i)) distinct.push_back(i);
+
+  // Small enough that the threads end together, and that memory is given back in between.
+  constexpr std::size_t kRange = 1U << 14U;
+  std::vector<PreparedRange> ranges((distinct.size() + kRange - 1) / kRange);
+  parallel_for_ranges(distinct.size(), kRange, [&](std::size_t begin, std::size_t end) {
+    PreparedRange& range = ranges[begin / kRange];
+    range.kept.reserve(end - begin);
+    range.opaque.reserve(static_cast<std::size_t>(std::count_if(
+        &distinct[begin], &distinct[begin] + (end - begin), std::not_fn(is_cut_out))));
+    for (std::size_t k = begin; k < end; ++k) {
+      const Triangle& triangle = mesh.triangles[distinct[k]];
+      PreparedTriangles& target = range.target(is_cut_out(distinct[k]));
+      if (body.animation)
+        setup.add_animated(triangle, target);
+      else if (!setup.add(triangle, target))
+        continue;
+      range.kept.push_back(distinct[k]);
+    }
+  });
+  std::size_t kept = 0;
+  for (PreparedRange& range : ranges) {
+    for (const std::uint32_t i : range.kept)
+      range.target(is_cut_out(i)).instances.push_back(numbers.of(mesh.triangles[i]));
+    kept += range.kept.size();
+    body.opaque.add(std::move(range.opaque));
+    body.cut_out.add(std::move(range.cut_out));
   }
   return kept;
 }
@@ -199,12 +246,17 @@ Scene SceneBuilder::build(const Background& background) && {
   state->cutouts = std::move(all.cutouts);
   state->triangle_instances = std::move(all.instances);
   state->instances = std::move(instances_);
-  // After the triangles have their numbers, and before they move on with the bodies.
+  // From here on the triangles have their numbers. Embree's trees and ours take as long.
+  auto bvhs = std::async(thread_count() > 1 ? std::launch::async : std::launch::deferred, [this] {
+    std::vector<TriangleBvh> of_bodies;
+    for (const Body& body : bodies_) of_bodies.push_back(body.bvh());
+    return of_bodies;
+  });
   for (std::size_t i = 1; i < bodies_.size(); ++i) state->animated.push_back(bodies_[i].animated());
   state->visibility.emplace(make_visibility(*state));
   const Body& still = bodies_.front();
   if (!still.is_empty()) state->size_m = extent_of(still.box());
-  for (Body& body : bodies_) state->bvh_triangles.push_back(std::move(body).occluders());
+  state->bvhs = bvhs.get();
   return Scene(std::move(state));
 }
 
@@ -220,25 +272,28 @@ void SceneBuilder::set_normal_frames(std::vector<NormalFrame> frames, std::size_
 
 PreparedTriangles SceneBuilder::number_triangles() {
   PreparedTriangles all;
-  const auto append = [&all](Body& body, PreparedTriangles Body::*part, std::size_t index) {
-    PreparedTriangles& triangles = body.*part;
-    if (body.is_moving())
-      for (TriangleSurface& surface : triangles.surfaces)
-        surface.body = static_cast<std::uint32_t>(index - 1);
-    const auto first = static_cast<TriangleId>(all.surfaces.size());
-    PreparedTriangles moved = std::move(triangles);
-    triangles = {};
-    triangles.corners = std::move(moved.corners);
-    triangles.corner_indices = std::move(moved.corner_indices);
-    moved.corners.clear();
-    moved.corner_indices.clear();
-    all.append(std::move(moved));
-    return first;
+  std::size_t count = 0;
+  for (const Body& body : bodies_) count += body.opaque.size() + body.cut_out.size();
+  const auto append = [&](std::size_t index, BodyPart Body::*part) {
+    BodyPart& to = bodies_[index].*part;
+    to.first = static_cast<TriangleId>(all.surfaces.size());
+    to.corners.reserve(bodies_[index].animation ? 0 : to.size());
+    for (PreparedTriangles& piece : to.pieces) {
+      // A scene of one piece moves as it is.
+      if (piece.surfaces.size() < count) all.reserve(count);
+      if (bodies_[index].is_moving())
+        for (TriangleSurface& surface : piece.surfaces)
+          surface.body = static_cast<std::uint32_t>(index - 1);
+      saccade::append(to.corners, std::exchange(piece.corners, {}));
+      saccade::append(to.corner_indices, std::exchange(piece.corner_indices, {}));
+      all.append(std::exchange(piece, {}));
+    }
+    to.pieces.clear();
   };
-  for (std::size_t i = 0; i < bodies_.size(); ++i)
-    bodies_[i].first_opaque = append(bodies_[i], &Body::opaque, i);
-  for (std::size_t i = 0; i < bodies_.size(); ++i)
-    bodies_[i].first_cut_out = append(bodies_[i], &Body::cut_out, i);
+  for (std::size_t i = 0; i < bodies_.size(); ++i) append(i, &Body::opaque);
+  for (std::size_t i = 0; i < bodies_.size(); ++i) append(i, &Body::cut_out);
+  // What the pieces leave behind is as much as the tables, and what follows has no use for it.
+  malloc_trim(0);
   return all;
 }
 
@@ -248,10 +303,10 @@ Visibility SceneBuilder::make_visibility(const Scene::State& state) const {
   };
   const auto embree_scene_of = [&](const Body& body) {
     if (body.animation)
-      return EmbreeScene(body.animation, {body.opaque.corner_indices, body.first_opaque},
-                         {body.cut_out.corner_indices, body.first_cut_out}, is_opaque);
-    return EmbreeScene({body.opaque.corners, body.first_opaque},
-                       {body.cut_out.corners, body.first_cut_out}, is_opaque);
+      return EmbreeScene(body.animation, {body.opaque.corner_indices, body.opaque.first},
+                         {body.cut_out.corner_indices, body.cut_out.first}, is_opaque);
+    return EmbreeScene({body.opaque.corners, body.opaque.first},
+                       {body.cut_out.corners, body.cut_out.first}, is_opaque);
   };
   std::optional<EmbreeScene> static_triangles;
   if (!bodies_.front().is_empty()) static_triangles.emplace(embree_scene_of(bodies_.front()));

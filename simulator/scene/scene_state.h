@@ -77,12 +77,6 @@ struct AnimatedTriangles {
   }
 };
 
-/// The triangles of a body, in its frame.
-struct BvhTriangles {
-  std::vector<Corners> corners;
-  std::vector<TriangleId> ids;
-};
-
 /// Corners' unit normals in the body's frame.
 using ShadingNormals = std::array<Eigen::Vector3f, 3>;
 
@@ -136,15 +130,10 @@ struct Scene::State {
   std::optional<Visibility> visibility;
   std::vector<AnimatedTriangles> animated;  ///< of the moving objects
   double size_m = 0;                        ///< of everything that is static
-  /// What the trees are made from when one is first asked.
-  std::vector<BvhTriangles> bvh_triangles;
-  std::once_flag bvhs_built;
+  /// Of what is static, then of the moving objects, each in its own frame.
   std::vector<TriangleBvh> bvhs;
   std::once_flag triangle_lightings_built;
   std::unique_ptr<TriangleLighting[]> triangle_lightings;  ///< two per triangle
-
-  /// Of what is static (0), then of the moving objects, each in its own frame.
-  [[nodiscard]] const TriangleBvh& bvh(std::size_t body);
 
   /// use(ray, surface, interior) in the frame of a triangle's body, at the time of the ray.
   template <class Use>

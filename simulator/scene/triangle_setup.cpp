@@ -43,15 +43,6 @@ TexelForms texel_forms(const Texture& texture, const std::vector<Eigen::Vector2d
   return {through(interior, x), through(interior, y)};
 }
 
-template <class Items>
-void append(Items& to, Items&& from) {
-  if (to.empty()) {
-    to = std::move(from);
-  } else {
-    to.insert(to.end(), from.begin(), from.end());
-  }
-}
-
 }  // namespace
 
 void PreparedTriangles::append(PreparedTriangles&& other) {
@@ -69,12 +60,11 @@ void PreparedTriangles::append(PreparedTriangles&& other) {
   saccade::append(instances, std::move(other.instances));
 }
 
-void PreparedTriangles::reserve_more(std::size_t count) {
-  saccade::reserve_more(corners, count);
-  saccade::reserve_more(surfaces, count);
-  saccade::reserve_more(interiors, count);
-  saccade::reserve_more(normals, count);
-  saccade::reserve_more(instances, count);
+void PreparedTriangles::reserve(std::size_t count) {
+  surfaces.reserve(count);
+  interiors.reserve(count);
+  normals.reserve(count);
+  instances.reserve(count);
 }
 
 TriangleSetup::TriangleSetup(const Mesh& mesh, const Eigen::Affine3d& body_from_mesh,

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -11,6 +14,16 @@
 #include "simulator/scene/scene_state.h"
 
 namespace saccade {
+
+/// Moves items behind others; where there are none and no room for them either, as they are.
+template <class Items>
+void append(Items& to, Items&& from) {
+  if (to.empty() && to.capacity() < from.size()) {
+    to = std::move(from);
+  } else {
+    to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+  }
+}
 
 /// Triangles in the form that rendering reads, in the frame of their body.
 struct PreparedTriangles {
@@ -26,8 +39,8 @@ struct PreparedTriangles {
   std::vector<std::uint16_t> instances;  ///< what each of them is labelled with
 
   void append(PreparedTriangles&& other);
-  /// Makes room for `count` more triangles without cutouts.
-  void reserve_more(std::size_t count);
+  /// Makes room for `count` triangles in all, of what every triangle has but its corners.
+  void reserve(std::size_t count);
 };
 
 /// Prepares the triangles of a mesh, one by one.

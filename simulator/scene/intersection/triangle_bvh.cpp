@@ -124,10 +124,14 @@ class Region {
 
 }  // namespace
 
-TriangleBvh::TriangleBvh(std::span<const Corners> triangles, std::span<const TriangleId> ids) {
-  SACCADE_CHECK(triangles.size() == ids.size());
-  triangles_.reserve(triangles.size());
-  for (std::size_t i = 0; i < ids.size(); ++i) triangles_.push_back({triangles[i], ids[i]});
+TriangleBvh::TriangleBvh(std::initializer_list<TriangleRun> runs) {
+  std::size_t count = 0;
+  for (const TriangleRun& run : runs) count += run.corners.size();
+  triangles_.reserve(count);
+  for (const TriangleRun& run : runs) {
+    TriangleId id = run.first;
+    for (const Corners& corners : run.corners) triangles_.push_back({corners, id++});
+  }
   nodes_.reserve(triangles_.size());
   if (!triangles_.empty()) build(0, static_cast<std::uint32_t>(triangles_.size()));
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <span>
 #include <vector>
 
@@ -26,8 +27,7 @@ struct AffineForm {
 /// built.
 class TriangleBvh {
  public:
-  /// `ids`: one per triangle.
-  TriangleBvh(std::span<const Corners> triangles, std::span<const TriangleId> ids);
+  explicit TriangleBvh(std::initializer_list<TriangleRun> runs);
 
   /// Whether some triangle may reach into a frustum that moves evenly through those of
   /// `frusta`, above zero of `front`.

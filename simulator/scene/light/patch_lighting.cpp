@@ -197,7 +197,7 @@ bool Scene::State::collect_occluders(const LightOptions& light,
   const auto frustum =
       frustum_around(eye, around, light.has_position() ? kFrustumMargin : kFarMargin);
   found.clear();
-  return frustum && bvh(0).collect({&*frustum, 1}, front, most, found) &&
+  return frustum && bvhs.front().collect({&*frustum, 1}, front, most, found) &&
          std::all_of(found.begin(), found.end(), [&](TriangleId triangle) {
            return triangle < surfaces.size() - cutouts.size();
          });
