@@ -69,6 +69,14 @@ void InertialBank::update(const ImuSample& sample) {
   has_last_ = true;
 }
 
+InertialBank InertialBank::turned_back() const {
+  InertialBank back = *this;
+  for (InertialFilter& filter : back.filters_) filter = filter.turned_back();
+  back.last_ = reversed(last_);
+  back.bias_ = -bias_;
+  return back;
+}
+
 void InertialBank::follow(const ImuSample& sample, double dt_s) {
   if (!has_last_ || dt_s > kMaxImuGap_s) {
     continuous_ = world_from_imu_;
@@ -103,7 +111,6 @@ void InertialBank::mix(double interval_s) {
       kOthers / kFilters * -std::expm1(-kChangesPerSecond * interval_s * kFilters / kOthers);
   for (InertialFilter& filter : filters_) filter.propagate();
   const AllErrors all = errors();
-  const State about = filters_[likeliest_].state();
   std::array<State, kFilters> mixed;
   Probabilities next;
   for (std::size_t to = 0; to < kFilters; ++to) {
@@ -113,18 +120,28 @@ void InertialBank::mix(double interval_s) {
       from[i] = (i == to ? 1 - changed : changed / kOthers) * probabilities_[i];
       next[to] += from[i];
     }
-    State::Errors mean = State::Errors::Zero();
-    for (std::size_t i = 0; i < kFilters; ++i) mean += from[i] / next[to] * all[i];
-    mixed[to] = moved(about, mean);
-    mixed[to].covariance.setZero();
-    for (std::size_t i = 0; i < kFilters; ++i) {
-      const State::Errors apart = all[i] - mean;
-      mixed[to].covariance +=
-          from[i] / next[to] * (filters_[i].state().covariance + apart * apart.transpose());
-    }
+    for (double& weight : from) weight /= next[to];
+    mixed[to] = mixture(all, from);
   }
   for (std::size_t i = 0; i < kFilters; ++i) filters_[i].set_state(mixed[i]);
   probabilities_ = next;
+}
+
+InertialState InertialBank::mixture(const AllErrors& all, const Probabilities& weights) const {
+  State::Errors mean = State::Errors::Zero();
+  for (std::size_t i = 0; i < kFilters; ++i) mean += weights[i] * all[i];
+  State mixed = moved(filters_[likeliest_].state(), mean);
+  mixed.covariance.setZero();
+  for (std::size_t i = 0; i < kFilters; ++i) {
+    const State::Errors apart = all[i] - mean;
+    mixed.covariance += weights[i] * (filters_[i].state().covariance + apart * apart.transpose());
+  }
+  return mixed;
+}
+
+InertialState InertialBank::state() {
+  for (InertialFilter& filter : filters_) filter.propagate();
+  return mixture(errors(), probabilities_);
 }
 
 auto InertialBank::errors() const -> AllErrors {

@@ -25,10 +25,15 @@ class InertialBank {
   /// Adds a sample; times increase (contract).
   void update(const ImuSample& sample);
 
+  /// These filters on the way back (InertialFilter::turned_back()).
+  [[nodiscard]] InertialBank turned_back() const;
+
   [[nodiscard]] const Eigen::Quaterniond& world_from_imu() const { return world_from_imu_; }
   /// The same without its jumps, for what is moved by it: it turns with the gyroscope and follows
   /// within a second.
   [[nodiscard]] const Eigen::Quaterniond& continuous() const { return continuous_; }
+  /// All that the filters know together, at the time of the last sample.
+  [[nodiscard]] InertialState state();
   [[nodiscard]] const Eigen::Vector3d& bias() const { return bias_; }  ///< [rad/s]
   [[nodiscard]] double bias_sigma() const;  ///< of one component, RMS [rad/s]
   [[nodiscard]] double tilt_sigma() const;  ///< of one component, RMS [rad]
@@ -46,6 +51,9 @@ class InertialBank {
   /// States about that of the likeliest filter.
   using AllErrors = std::array<InertialState::Errors, kFilters>;
   [[nodiscard]] AllErrors errors() const;
+  /// The mean of the filters with these weights, and their covariances and spread; `all`: errors(),
+  /// to whose time they were propagated.
+  [[nodiscard]] InertialState mixture(const AllErrors& all, const Probabilities& weights) const;
   /// Variance of `size` components of the mean from `first` on, each: the filters' and their spread.
   [[nodiscard]] double variance(int first, int size) const;
   /// Updates the probabilities by the likelihoods.

@@ -29,6 +29,17 @@ constexpr int kSamplesPerUpdate = 10;
 
 }  // namespace
 
+InertialState reversed(const InertialState& state) {
+  InertialState to = state;
+  to.bias = -state.bias;
+  to.velocity = -state.velocity;
+  for (const int first : {kBias, kVelocity}) {
+    to.covariance.middleRows<3>(first) *= -1;
+    to.covariance.middleCols<3>(first) *= -1;
+  }
+  return to;
+}
+
 InertialFilter::InertialFilter(const InertialFilterOptions& options,
                                const GyroscopeNoise& gyroscope)
     : options_(options), gyroscope_(gyroscope), rest_(gyroscope.density) {
@@ -68,6 +79,20 @@ void InertialFilter::update(const ImuSample& sample) {
     measure(kBias, rest->mean_rate - state_.bias, rest->rate_sigma * rest->rate_sigma);
   }
   last_ = sample;
+}
+
+InertialFilter InertialFilter::turned_back() const {
+  InertialFilter back = *this;
+  back.propagate();
+  back.state_ = reversed(back.state_);
+  // What was measured on the way here is measured again on the way back.
+  back.state_.covariance *= 2;
+  // Headings are those relative to this one from now on.
+  back.state_.covariance.row(kTheta + 2).setZero();
+  back.state_.covariance.col(kTheta + 2).setZero();
+  back.last_ = reversed(last_);
+  back.rest_.interrupt();
+  return back;
 }
 
 void InertialFilter::start(const ImuSample& sample) {

@@ -31,6 +31,14 @@ struct InertialState {
   Covariance covariance = Covariance::Zero();
 };
 
+/// A reading of the motion that runs backwards in time, at minus its time: the rate turns round, the
+/// specific force does not.
+[[nodiscard]] inline ImuSample reversed(const ImuSample& sample) {
+  return {-sample.t_ns, sample.specific_force, -sample.angular_velocity};
+}
+/// The state of the motion that runs backwards in time: velocity and gyroscope's bias turn round.
+[[nodiscard]] InertialState reversed(const InertialState& state);
+
 /// Orientation, velocity, position and both biases by an error-state Kalman filter. What separates
 /// gravity from acceleration is that a hand-held device stays slow and within reach, however hard
 /// it is shaken:
@@ -58,6 +66,9 @@ class InertialFilter {
   }
   /// Goes on from another state at the time of the last sample, to which this one was propagated.
   void set_state(const InertialState& state) { state_ = state; }
+  /// This filter on the way back, as of a sensor that turns and moves the other way: its samples are
+  /// the reversed() ones from the last one on, which is its own already.
+  [[nodiscard]] InertialFilter turned_back() const;
   /// Log likelihood of the pseudo-measurements since the last call; 0 where there were none.
   [[nodiscard]] double take_log_likelihood() { return std::exchange(log_likelihood_, 0); }
 

@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "estimator/imu/inertial_smoother.h"
+
 namespace saccade {
 namespace {
 
@@ -54,15 +56,17 @@ void describe(config::Fields& fields, GyroscopeNoise& noise) {
 void describe(config::Fields& fields, OrientationOptions& options) {
   using Method = OrientationOptions::Method;
   fields.choice("method", options.method,
-                {{"inertial", Method::kInertial},
+                {{"smoothed", Method::kSmoothed},
+                 {"inertial", Method::kInertial},
                  {"complementary", Method::kComplementary},
                  {"gyroscope", Method::kGyroscope}},
                 "Filter for the orientation: error-state Kalman filters with velocity, position "
-                "and biases that expect fast, usual and gentle motion (`inertial`, the most "
-                "accurate), the complementary filter of the "
+                "and biases that expect fast, usual and gentle motion, run forwards and backwards "
+                "in time (`smoothed`, the most accurate) or forwards alone, which knows nothing of "
+                "what comes later (`inertial`), the complementary filter of the "
                 "thesis (`complementary`, Valenti et al.), or the plain integral of the gyroscope "
                 "(`gyroscope`).");
-  if (options.method == Method::kInertial)
+  if (options.method == Method::kInertial || options.method == Method::kSmoothed)
     fields
         .value("position_sigma_m", options.inertial.position_sigma_m,
                "Standard deviation of one component of the position about the start, in metres: "
@@ -76,6 +80,8 @@ void describe(config::Fields& fields, OrientationOptions& options) {
 
 std::vector<ImuOrientation> estimate_orientations(std::span<const ImuSample> samples,
                                                   const OrientationOptions& options) {
+  if (options.method == OrientationOptions::Method::kSmoothed)
+    return smooth_orientations(samples, options.inertial, options.gyroscope);
   if (options.method == OrientationOptions::Method::kInertial)
     return run(
         InertialBank(options.inertial, options.gyroscope), samples, [](const InertialBank& filter) {

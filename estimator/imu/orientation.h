@@ -14,12 +14,13 @@ namespace saccade {
 
 struct OrientationOptions {
   enum class Method {
+    kSmoothed,       ///< InertialBank in both directions of time
     kInertial,       ///< InertialBank
     kComplementary,  ///< ComplementaryFilter
     kGyroscope,      ///< integral of the measured rate, from the tilt of the first sample
   };
 
-  Method method = Method::kInertial;
+  Method method = Method::kSmoothed;
   GyroscopeNoise gyroscope;
   InertialFilterOptions inertial;
   ComplementaryOptions complementary;

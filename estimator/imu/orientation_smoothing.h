@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -14,6 +15,11 @@
 namespace saccade {
 
 struct SmoothingOptions {
+  enum class LowPass {
+    kCentred,  ///< forwards and then backwards in time, which does not lag
+    kCausal,   ///< forwards, as in the thesis
+  };
+  LowPass low_pass = LowPass::kCentred;
   double time_constant_s = 0.4;  ///< tau: alpha of (3.18) is 1 - exp(-dt / tau), 0.1 at 24 Hz
   bool lock_roll = false;
   double max_angle_deg = 20;
@@ -34,25 +40,38 @@ struct SmoothingOptions {
 /// The steady orientation that pictures are rotated to (thesis 3.2): that of the camera after a
 /// low-pass filter,
 ///   q_s <- Slerp(q_s, q_k, alpha) = (q_k q_s^-1)^alpha q_s                                 (3.18)
-/// once for every pose, in order of time. (The thesis prints (q_s q_k^-1)^alpha q_s, which moves
-/// away from q_k.) Starts at the first pose. The result has the same times and zero positions.
+/// once for every pose, in order of time, from the first one on. (The thesis prints
+/// (q_s q_k^-1)^alpha q_s, which moves away from q_k.) A centred one filters the result again, from the
+/// last pose back: at a constant rate it is where the camera is, in place of tau behind, and the
+/// view keeps what the camera sees. The result has the same times and zero positions.
 [[nodiscard]] inline Trajectory smoothed_orientations(const Trajectory& world_from_camera,
                                                       const SmoothingOptions& options) {
+  const auto poses = world_from_camera.poses();
   const double max_angle = options.max_angle_deg * std::numbers::pi / 180;
+  const bool is_centred = options.low_pass == SmoothingOptions::LowPass::kCentred;
+  const auto alpha = [&](std::size_t a, std::size_t b) {
+    return 1 - std::exp(-std::abs(poses[b].t_s - poses[a].t_s) / options.time_constant_s);
+  };
+  const auto within_reach = [&](const Eigen::Quaterniond& steady, std::size_t k) {
+    const Eigen::Quaterniond& q_k = poses[k].world_from_camera.rotation();
+    const double angle = angle_between(steady, q_k);
+    return angle > max_angle ? q_k.slerp(max_angle / angle, steady) : steady;
+  };
+  std::vector<Eigen::Quaterniond> steady;
+  steady.reserve(poses.size());
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const Eigen::Quaterniond& q_k = poses[k].world_from_camera.rotation();
+    steady.push_back(k == 0 ? q_k : steady.back().slerp(alpha(k - 1, k), q_k));  // (3.18)
+    if (!is_centred) steady.back() = within_reach(steady.back(), k);
+  }
+  if (is_centred)
+    for (std::size_t k = poses.size(); k-- > 1;)
+      steady[k - 1] = steady[k].slerp(alpha(k - 1, k), steady[k - 1]);
   std::vector<StampedPose> smoothed;
-  smoothed.reserve(world_from_camera.size());
-  Eigen::Quaterniond q_s;
-  for (const StampedPose& pose : world_from_camera.poses()) {
-    const Eigen::Quaterniond& q_k = pose.world_from_camera.rotation();
-    if (smoothed.empty()) {
-      q_s = q_k;
-    } else {
-      const double dt_s = pose.t_s - smoothed.back().t_s;
-      q_s = q_s.slerp(1 - std::exp(-dt_s / options.time_constant_s), q_k);  // (3.18)
-      const double angle = angle_between(q_s, q_k);
-      if (angle > max_angle) q_s = q_k.slerp(max_angle / angle, q_s);
-    }
-    smoothed.push_back({pose.t_s, {options.lock_roll ? without_roll(q_s) : q_s, {0, 0, 0}}});
+  smoothed.reserve(poses.size());
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const Eigen::Quaterniond q_s = within_reach(steady[k], k);
+    smoothed.push_back({poses[k].t_s, {options.lock_roll ? without_roll(q_s) : q_s, {0, 0, 0}}});
   }
   return Trajectory(std::move(smoothed));
 }

@@ -153,9 +153,17 @@ void write(const std::filesystem::path& folder, const Dataset& dataset, const Or
 void describe(config::Fields& fields, StabilizeConfig& config) {
   fields.section("orientation", config.orientation,
                  "Orientation from the inertial sensor. Not used with --poses-from.");
+  using LowPass = SmoothingOptions::LowPass;
+  fields.choice(
+      "low_pass", config.smoothing.low_pass,
+      {{"centred", LowPass::kCentred}, {"causal", LowPass::kCausal}},
+      "Low-pass filter of the steady orientation: forwards and then backwards in time, so "
+      "that the view does not lag behind the camera and leave what it sees (`centred`), "
+      "or forwards alone, as in the thesis (`causal`).");
   fields
       .value("time_constant_s", config.smoothing.time_constant_s,
-             "Time constant of the low-pass filter of the steady orientation, in seconds. Larger "
+             "Time constant of the low-pass filter of the steady orientation, in seconds, of each "
+             "direction. Larger "
              "values remove slower motion; 0.4 corresponds to the thesis's 0.1 per frame (3.18).")
       .range(1e-4, 1e6);
   fields.value("lock_roll", config.smoothing.lock_roll,
@@ -227,7 +235,11 @@ RunSummary run_stabilization(const RunRequest& request) {
     const ScopedTimer clock(timing.io_s);
     write(writer.path(), dataset, found, window);
   }
-  MethodClass method_class{{MethodInput::kEvents}};
+  const bool is_smoothed =
+      imu && config.orientation.method == OrientationOptions::Method::kSmoothed;
+  const bool is_centred = config.smoothing.low_pass == SmoothingOptions::LowPass::kCentred;
+  MethodClass method_class{{MethodInput::kEvents},
+                           is_smoothed || is_centred ? Processing::kBatch : Processing::kCausal};
   if (imu) method_class.inputs.insert(MethodInput::kImu);
   writer.set_class(method_class);
   writer.finish("stabilize", request, dataset, window, config.seed, config::print(config), timing);

@@ -19,10 +19,12 @@ struct RotationConfig {
 
   Method method = Method::kEvents;
   RotationOptions events;
-  OrientationOptions orientation;  ///< of kImu
+  OrientationOptions orientation;  ///< of kImu, which takes what was known by the time of a rate
   double averaging_s = 0;          ///< of kImu
   GyroscopeNoise gyroscope;        ///< of kBoth
   std::uint64_t seed = 1;
+
+  RotationConfig() { orientation.method = OrientationOptions::Method::kInertial; }
 };
 
 void describe(config::Fields& fields, RotationConfig& config);

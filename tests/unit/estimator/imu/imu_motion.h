@@ -86,4 +86,18 @@ inline ImuMotion hand_motion() {
           }};
 }
 
+/// Of a gyroscope whose bias nobody knows.
+inline const ImuErrors kUnknownBias{{0.05, -0.04, 0.03}, {0.03, -0.02, 0.04}, 1e-3, 1e-2};
+
+/// Turned slowly, so that the tilt changes, too, by a hand that hardly trembles.
+inline ImuMotion gentle_motion() {
+  return {[](double t_s) {
+            return so3_exp({1.2, 0.1, -0.4}) * so3_exp({0, 0, 0.6 * t_s});
+          },
+          [](double t_s) {
+            return Eigen::Vector3d(0.1 * std::sin(9 * t_s), 0.1 * std::sin(11 * t_s + 0.5),
+                                   0.1 * std::cos(8 * t_s));
+          }};
+}
+
 }  // namespace saccade::testing

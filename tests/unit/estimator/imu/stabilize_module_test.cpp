@@ -135,7 +135,7 @@ TEST(StabilizeConfig, ShippedFilesAreRead) {
   const auto method = [&](const char* name) {
     return config::read<StabilizeConfig>(config::load(folder + name)).orientation.method;
   };
-  EXPECT_EQ(method("best.yaml"), OrientationOptions::Method::kInertial);
+  EXPECT_EQ(method("best.yaml"), OrientationOptions::Method::kSmoothed);
   EXPECT_EQ(method("thesis.yaml"), OrientationOptions::Method::kComplementary);
   EXPECT_EQ(method("gyroscope.yaml"), OrientationOptions::Method::kGyroscope);
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -104,24 +105,62 @@ TEST(OrientationSmoothing, FollowsAStepWithItsTimeConstant) {
   for (int i = 0; i <= 1000; ++i)
     poses.push_back({1e-3 * i, {i == 0 ? Eigen::Quaterniond::Identity() : turned, {0, 0, 0}}});
   SmoothingOptions options;
+  options.low_pass = SmoothingOptions::LowPass::kCausal;
   options.time_constant_s = 0.25;
   const Trajectory smoothed = smoothed_orientations(Trajectory(poses), options);
   const double left = angle_between(smoothed.at(0.5)->rotation(), turned);
   EXPECT_NEAR(left / std::hypot(0.1, 0.2), std::exp(-2), 1e-3);
 }
 
-TEST(OrientationSmoothing, StaysWithinTheLargestAngle) {
+/// A camera that pans at 1 rad/s, or stands still but for a tremor of `tremor_rad` at 10 Hz.
+Trajectory panned(double rate_rad_s, double tremor_rad) {
   std::vector<StampedPose> poses;
-  for (int i = 0; i <= 1000; ++i)
-    poses.push_back({1e-3 * i, {so3_exp({0, 3e-3 * i, 0}), {0, 0, 0}}});
+  for (int i = 0; i <= 4000; ++i) {
+    const double t_s = 1e-3 * i;
+    const double angle = rate_rad_s * t_s + tremor_rad * std::sin(20 * std::numbers::pi * t_s);
+    poses.push_back({t_s, {so3_exp({0, angle, 0}), {0, 0, 0}}});
+  }
+  return Trajectory(std::move(poses));
+}
+
+TEST(OrientationSmoothing, ACentredOneDoesNotLagBehindAPan) {
+  const Trajectory pan = panned(0.5, 0);
+  SmoothingOptions options;
+  options.time_constant_s = 0.25;
+  const auto lag = [&] {
+    return angle_between(smoothed_orientations(pan, options).at(2)->rotation(),
+                         pan.at(2)->rotation());
+  };
+  EXPECT_LT(lag(), 1e-3);
+  options.low_pass = SmoothingOptions::LowPass::kCausal;
+  EXPECT_NEAR(lag(), 0.5 * 0.25, 1e-3);
+}
+
+TEST(OrientationSmoothing, ACentredOneRemovesATremorTwice) {
+  const Trajectory tremor = panned(0, 0.1);
+  SmoothingOptions options;
+  options.time_constant_s = 0.1;
+  const Trajectory smoothed = smoothed_orientations(tremor, options);
+  double most = 0;
+  for (double t_s = 1; t_s < 3; t_s += 1e-3)
+    most = std::max(most, angle_between(smoothed.at(t_s)->rotation(), {1, 0, 0, 0}));
+  const double phase = 20 * std::numbers::pi * 0.1;
+  EXPECT_NEAR(most, 0.1 / (1 + phase * phase), 1e-4);
+}
+
+TEST(OrientationSmoothing, StaysWithinTheLargestAngle) {
+  const Trajectory trajectory = panned(3, 0);
   SmoothingOptions options;
   options.time_constant_s = 10;
   options.max_angle_deg = 15;
-  const Trajectory trajectory(poses);
-  const Trajectory smoothed = smoothed_orientations(trajectory, options);
-  for (const double t_s : {0.2, 0.5, 1.0})
-    EXPECT_LE(angle_between(smoothed.at(t_s)->rotation(), trajectory.at(t_s)->rotation()),
-              15.001 * std::numbers::pi / 180);
+  for (const auto low_pass :
+       {SmoothingOptions::LowPass::kCentred, SmoothingOptions::LowPass::kCausal}) {
+    options.low_pass = low_pass;
+    const Trajectory smoothed = smoothed_orientations(trajectory, options);
+    for (const double t_s : {0.0, 0.2, 0.5, 1.0, 3.9})
+      EXPECT_LE(angle_between(smoothed.at(t_s)->rotation(), trajectory.at(t_s)->rotation()),
+                15.001 * std::numbers::pi / 180);
+  }
 }
 
 TEST(OrientationSmoothing, WithoutRollTheRowsAreLevel) {
