@@ -17,7 +17,7 @@ namespace saccade {
 
 /// Moves items behind others; where there are none and no room for them either, as they are.
 template <class Items>
-void append(Items& to, Items&& from) {
+void append(Items& to, Items from) {
   if (to.empty() && to.capacity() < from.size()) {
     to = std::move(from);
   } else {

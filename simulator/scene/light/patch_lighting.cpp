@@ -190,7 +190,7 @@ bool Scene::State::collect_occluders(const LightOptions& light,
                                      std::size_t most, std::vector<TriangleId>& found) {
   // Paths begin at the lifted points, which in a large scene are far from a small patch.
   std::vector<Eigen::Vector3d> around(patch.begin(), patch.end());
-  for (const Eigen::Vector3d& point : patch) around.push_back(point + shadow_offset);
+  for (const Eigen::Vector3d& point : patch) around.emplace_back(point + shadow_offset);
   const Eigen::Vector3d eye = light.has_position()
                                   ? light.position
                                   : Eigen::Vector3d(patch[0] - kFar * size_m * light.direction);
