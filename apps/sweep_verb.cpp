@@ -165,9 +165,7 @@ void sweep(SweepVerbOptions options) {
                                          (options.output / "sweep.md").string()));
 }
 
-void add_sweep_options(CLI::App& verb, SweepVerbOptions& options) {
-  verb.add_option("--launcher", options.launcher, "Where the jobs run: local or slurm.")
-      ->capture_default_str();
+void add_slurm_options(CLI::App& verb, SweepVerbOptions& options) {
   verb.add_option("--slurm-option", options.slurm.options,
                   "Option for sbatch, e.g. --slurm-option=--partition=long (repeatable).")
       ->type_name("OPTION")
@@ -199,12 +197,10 @@ void add_sweep_options(CLI::App& verb, SweepVerbOptions& options) {
                   "search path. Folders other than the sweep's are shown to it by APPTAINER_BIND.")
       ->type_name("IMAGE")
       ->check(CLI::ExistingFile);
-  verb.add_option(
-          "-j,--jobs", options.jobs,
-          "Number of jobs at a time (default: as many as the cores allow; on Slurm, as many as it "
-          "accepts). Speeds are comparable only with 1; `timing: true` in the file requires it.")
-      ->type_name("N")
-      ->check(whole_number(1, 4096));
+}
+
+/// What a sweep does in place of running its jobs, or before.
+void add_sweep_modes(CLI::App& verb, SweepVerbOptions& options) {
   CLI::Option* dry_run =
       verb.add_flag("--dry-run", options.dry_run,
                     "Print the command lines and what would be skipped; for a sweep that generates "
@@ -221,13 +217,6 @@ void add_sweep_options(CLI::App& verb, SweepVerbOptions& options) {
                       "Write the jobs with their commands and what each needs as JSON, for another "
                       "workflow manager, and stop.")
           ->type_name("FILE");
-  verb.add_option(
-          "--submission", options.submissions,
-          "Also run the method in this folder, which holds an adapter.yaml with its licence "
-          "and class (repeatable); sweep.md ranks it in its class.")
-      ->type_name("DIR")
-      ->take_all()
-      ->allow_extra_args(false);
   CLI::Option* merge =
       verb.add_option(
               "--merge", options.merge,
@@ -246,6 +235,26 @@ void add_sweep_options(CLI::App& verb, SweepVerbOptions& options) {
   const std::vector<CLI::Option*> modes{dry_run, status, json, merge, clean, pack};
   for (std::size_t i = 0; i < modes.size(); ++i)
     for (std::size_t k = 0; k < i; ++k) modes[i]->excludes(modes[k]);
+}
+
+void add_sweep_options(CLI::App& verb, SweepVerbOptions& options) {
+  verb.add_option("--launcher", options.launcher, "Where the jobs run: local or slurm.")
+      ->capture_default_str();
+  add_slurm_options(verb, options);
+  verb.add_option(
+          "-j,--jobs", options.jobs,
+          "Number of jobs at a time (default: as many as the cores allow; on Slurm, as many as it "
+          "accepts). Speeds are comparable only with 1; `timing: true` in the file requires it.")
+      ->type_name("N")
+      ->check(whole_number(1, 4096));
+  add_sweep_modes(verb, options);
+  verb.add_option(
+          "--submission", options.submissions,
+          "Also run the method in this folder, which holds an adapter.yaml with its licence "
+          "and class (repeatable); sweep.md ranks it in its class.")
+      ->type_name("DIR")
+      ->take_all()
+      ->allow_extra_args(false);
   verb.add_option("--set", options.overrides,
                   "Override one key of the sweep file, e.g. --set repeat=1 (repeatable).")
       ->type_name("KEY.PATH=VALUE")

@@ -137,7 +137,7 @@ Metrics evaluate_trajectory(const std::filesystem::path& estimate_file,
                             const std::filesystem::path& dataset_folder,
                             const std::optional<std::filesystem::path>& output,
                             const std::optional<double>& mean_depth_m) {
-  const Metrics metrics =
+  Metrics metrics =
       score_estimate(read_estimate(estimate_file), Dataset::open(dataset_folder), mean_depth_m);
   if (output) write_atomically(*output, to_json(metrics));
   return metrics;
@@ -169,8 +169,7 @@ Metrics evaluate_depth(const ExternalDepth& depth, const std::filesystem::path& 
     views = {depth.is_cloud ? load_cloud(depth.file, dataset, t_s)
                             : load_depth_map(depth.file, dataset, t_s)};
   }
-  const Metrics metrics =
-      catalogued(score_depth(views, compare_views(views, dataset), dataset.camera()));
+  Metrics metrics = catalogued(score_depth(views, compare_views(views, dataset), dataset.camera()));
   if (output) write_atomically(*output, to_json(metrics));
   return metrics;
 }
@@ -187,7 +186,7 @@ Metrics evaluate_image(const std::filesystem::path& file, const std::optional<do
     if (!at_s) throw InputError("--at-s", "state the time of the view of --image");
     views = {load_image(file, dataset, *at_s)};
   }
-  const Metrics metrics = catalogued(score_images(views, dataset));
+  Metrics metrics = catalogued(score_images(views, dataset));
   if (output) write_atomically(*output, to_json(metrics));
   return metrics;
 }

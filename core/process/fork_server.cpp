@@ -145,9 +145,10 @@ void open_streams(const std::string& log) {
   open_streams(request.log);
   std::vector<std::string> words = request.words;
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
-  std::exit(command(static_cast<int>(words.size()), arguments.data()));
+  std::exit(command(static_cast<int>(words.size()), arguments.data()));  // NOLINT: has one thread
 }
 
 /// Tells of every copy that has ended.
@@ -201,7 +202,7 @@ int serve_forks(const std::function<int(int, char**)>& command) {
   sigset_t child, before;
   sigemptyset(&child);
   sigaddset(&child, SIGCHLD);
-  sigprocmask(SIG_BLOCK, &child, &before);
+  pthread_sigmask(SIG_BLOCK, &child, &before);
   struct sigaction wake {};
   wake.sa_handler = nothing;
   sigaction(SIGCHLD, &wake, nullptr);
@@ -211,7 +212,7 @@ int serve_forks(const std::function<int(int, char**)>& command) {
   const auto restored = [&](int argc, char** argv) {
     ::signal(SIGCHLD, SIG_DFL);
     for (const int ignored : kIgnored) ::signal(ignored, SIG_DFL);
-    sigprocmask(SIG_SETMASK, &before, nullptr);
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
     return command(argc, argv);
   };
   std::vector<Served> running;

@@ -55,9 +55,9 @@ void RegionWeights::reset() {
 std::size_t RegionWeights::region_of(const Eigen::Vector2f& pixel) const {
   const auto part = [&](float at, int count) {
     const float last = static_cast<float>(count * side_px_ - 1);
-    return static_cast<int>(std::clamp(at, 0.0F, last)) / side_px_;
+    return static_cast<std::size_t>(static_cast<int>(std::clamp(at, 0.0F, last)) / side_px_);
   };
-  return static_cast<std::size_t>(part(pixel.y(), rows_) * columns_ + part(pixel.x(), columns_));
+  return part(pixel.y(), rows_) * static_cast<std::size_t>(columns_) + part(pixel.x(), columns_);
 }
 
 void RegionWeights::add(std::size_t region, float relative, float certainty) {
