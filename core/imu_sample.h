@@ -11,6 +11,7 @@ struct ImuSample {
   TimeNs t_ns = 0;
   Eigen::Vector3d specific_force = Eigen::Vector3d::Zero();    ///< [m/s^2]; +9.81 upwards at rest
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< [rad/s]
+  bool may_rest = true;  ///< false where something else shows that the sensor turns
 };
 
 /// What is behind a reading: reading = ideal + bias + white noise.

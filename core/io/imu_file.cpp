@@ -37,6 +37,17 @@ void expect_later(const TextRow& row, TimeNs before, TimeNs now) {
                        seconds_from_ns(before)));
 }
 
+/// No sensor of a camera reads as much, and one such number spoils every filter after it.
+void expect_plausible(const TextRow& row, const ImuSample& sample) {
+  constexpr double kMostForce = 1e4;  // a thousand times gravity [m/s^2]
+  constexpr double kMostRate = 1e3;   // [rad/s]
+  if (!(sample.specific_force.cwiseAbs().maxCoeff() <= kMostForce))
+    row.fail(fmt::format("a specific force beyond {:.0f} m/s^2; are its units m/s^2?", kMostForce));
+  if (!(sample.angular_velocity.cwiseAbs().maxCoeff() <= kMostRate))
+    row.fail(
+        fmt::format("an angular velocity beyond {:.0f} rad/s; are its units rad/s?", kMostRate));
+}
+
 /// A space and the three numbers, each in the shortest form that reads back exactly.
 void append(fmt::memory_buffer& text, const Eigen::Vector3d& v) {
   fmt::format_to(std::back_inserter(text), " {} {} {}", v.x(), v.y(), v.z());
@@ -56,6 +67,7 @@ std::vector<ImuSample> read_imu(const std::filesystem::path& file) {
     const ImuSample sample = read_sample(row);
     if (!samples.empty()) expect_later(row, samples.back().t_ns, sample.t_ns);
     row.expect_end(kReading);
+    expect_plausible(row, sample);
     samples.push_back(sample);
     return true;
   });

@@ -34,7 +34,7 @@ struct InertialState {
 /// A reading of the motion that runs backwards in time, at minus its time: the rate turns round, the
 /// specific force does not.
 [[nodiscard]] inline ImuSample reversed(const ImuSample& sample) {
-  return {-sample.t_ns, sample.specific_force, -sample.angular_velocity};
+  return {-sample.t_ns, sample.specific_force, -sample.angular_velocity, sample.may_rest};
 }
 /// The state of the motion that runs backwards in time: velocity and gyroscope's bias turn round.
 [[nodiscard]] InertialState reversed(const InertialState& state);

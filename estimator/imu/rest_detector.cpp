@@ -11,8 +11,6 @@ namespace {
 // Over 0.1 s the noise of a consumer sensor averages to 0.03 m/s^2 and 0.003 rad/s: the thresholds
 // are several sigma of it, and far below what a hand does.
 constexpr double kRestWindow_s = 0.1;
-/// Of the mean force's magnitude from gravity [m/s^2]: two real cameras at rest read 10.1 and 10.6.
-constexpr double kMaxForceError = 0.9;
 constexpr double kMaxRate = 0.15;  ///< of the mean rate from the bias, once unknown [rad/s]
 constexpr double kGateSigmas = 4;
 /// Nearly at rest the rate changes by this from one window to the next, and is as far from the bias
@@ -30,13 +28,14 @@ std::optional<Rest> RestDetector::add(const ImuSample& sample, double dt_s,
   last_force_ = sample.specific_force;
   force_sum_ += dt_s * sample.specific_force;
   rate_sum_ += dt_s * sample.angular_velocity;
+  may_rest_ = may_rest_ && sample.may_rest;
   length_s_ += dt_s;
   ++samples_;
   // A hundred intervals of 1 ms do not sum to 0.1 s to the last bit.
   if (length_s_ < kRestWindow_s * (1 - 1e-9)) return std::nullopt;
   // The difference of two samples has twice the variance of one, in three components.
   const auto n = static_cast<double>(samples_);
-  const Window now{length_s_, force_sum_ / length_s_, rate_sum_ / length_s_,
+  const Window now{length_s_, force_sum_ / length_s_, rate_sum_ / length_s_, may_rest_,
                    difference_squares_ / (6 * n * n)};
   start_window();
   windows_[count_++ % kWindows] = now;
@@ -64,7 +63,7 @@ std::optional<Rest> RestDetector::near_rest(double bias_sigma) {
   const Window& now = windows_[(count_ - 1) % kWindows];
   const Window& before = windows_[(count_ - 2) % kWindows];
   for (const Window* window : {&before, &now})
-    if (std::abs(window->force.norm() - kGravity_m_s2) > kMaxForceError ||
+    if (!window->may_rest || std::abs(window->force.norm() - kGravity_m_s2) > kMaxForceError ||
         window->rate.norm() > kMaxRate)
       return std::nullopt;
   if ((now.rate - before.rate).norm() > kNearRest) return std::nullopt;
@@ -77,6 +76,7 @@ bool RestDetector::is_steady() const {
   Window mean;
   double force_noise = 0;
   for (const Window& window : windows_) {
+    if (!window.may_rest) return false;
     mean.force += window.force / kWindows;
     mean.rate += window.rate / kWindows;
     force_noise += window.force_variance / kWindows;
@@ -100,6 +100,7 @@ void RestDetector::start_window() {
   force_sum_.setZero();
   rate_sum_.setZero();
   difference_squares_ = 0;
+  may_rest_ = true;
 }
 
 void RestDetector::interrupt() {

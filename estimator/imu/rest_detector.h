@@ -14,6 +14,8 @@ namespace saccade {
 constexpr double kGravity_m_s2 = 9.81;
 /// After a longer gap between samples the orientation filters read the tilt again.
 constexpr double kMaxImuGap_s = 0.1;
+/// Of the mean force's magnitude from gravity at rest [m/s^2]: two real cameras read 10.1 and 10.6.
+constexpr double kMaxForceError = 0.9;
 
 /// Time in which the sensor did not move.
 struct Rest {
@@ -27,7 +29,7 @@ struct Rest {
 /// specific force has the magnitude of gravity, the mean rate is a possible bias (below 0.15 rad/s
 /// and within four sigma), and over four windows in a row neither changes by more than noise does:
 /// a turn that slows down, or that tilts the sensor, is none. A slow rotation about the vertical at
-/// a constant rate cannot be told from rest. While nothing is known of the bias, the first two
+/// a constant rate cannot be told from rest but by ImuSample::may_rest. While nothing is known of the bias, the first two
 /// windows of a slow and nearly constant rate tell it roughly: recordings begin at rest more often
 /// than in a turn.
 class RestDetector {
@@ -51,6 +53,7 @@ class RestDetector {
     double length_s = 0;
     Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< mean
     Eigen::Vector3d rate = Eigen::Vector3d::Zero();   ///< mean
+    bool may_rest = true;                             ///< ImuSample::may_rest of all
     double force_variance = 0;  ///< of a component of the mean, by what its samples differ
   };
   static constexpr std::size_t kWindows = 4;
@@ -67,6 +70,7 @@ class RestDetector {
   std::size_t samples_ = 0;
   Eigen::Vector3d force_sum_ = Eigen::Vector3d::Zero();  ///< times the length
   Eigen::Vector3d rate_sum_ = Eigen::Vector3d::Zero();   ///< likewise
+  bool may_rest_ = true;
   double difference_squares_ = 0;  ///< of the force, from one sample to the next
 
   std::optional<Eigen::Vector3d> last_force_;

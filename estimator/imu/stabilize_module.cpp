@@ -22,6 +22,7 @@
 #include "estimator/imu/imu_input.h"
 #include "estimator/imu/stabilize_output.h"
 #include "estimator/imu/stabilizer.h"
+#include "estimator/imu/turning_events.h"
 #include "estimator/run/run_input.h"
 #include "estimator/run/run_writer.h"
 
@@ -200,6 +201,10 @@ RunSummary run_stabilization(const RunRequest& request) {
     }
   }
   const bool has_events = !dataset.events_file().empty();
+  if (imu && has_events) {
+    const ScopedTimer clock(timing.io_s);
+    mark_turns(*imu, dataset);
+  }
   const TimeWindow event_times = event_window(request, dataset);
   Orientations found;
   Stabilization done;

@@ -16,6 +16,7 @@
 #include "core/process/progress.h"
 #include "core/stopwatch.h"
 #include "estimator/imu/imu_input.h"
+#include "estimator/imu/turning_events.h"
 #include "estimator/mosaic/mosaic_config.h"
 #include "estimator/mosaic/rate_offset.h"
 #include "estimator/reconstruction/reconstruction_output.h"
@@ -40,6 +41,7 @@ MosaicSource load_source(const RunRequest& request, const Dataset& dataset) {
   } else {
     refuse_smoothing(request, "the orientation is the inertial sensor's; it is of --poses-from");
     source.imu = load_imu_input(dataset, "mosaic (or --poses-from RUN)");
+    mark_turns(*source.imu, dataset);
   }
   source.events = load_events(request, dataset);
   return source;

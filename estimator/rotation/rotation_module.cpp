@@ -162,7 +162,12 @@ Rates find_rates(const RotationConfig& config, const PinholeCamera& camera, Even
 /// Rates over a window are stamped with its middle.
 MethodClass class_of(const RotationConfig& config) {
   const bool is_averaged = config.method != Method::kImu || config.averaging_s > 0;
-  MethodClass method{{}, is_averaged ? Processing::kFixedLag : Processing::kCausal};
+  const bool is_smoothed = config.method == Method::kImu &&
+                           config.orientation.method == OrientationOptions::Method::kSmoothed;
+  MethodClass method{{},
+                     is_smoothed   ? Processing::kBatch
+                     : is_averaged ? Processing::kFixedLag
+                                   : Processing::kCausal};
   if (config.method != Method::kImu) method.inputs.insert(MethodInput::kEvents);
   if (config.method != Method::kEvents) method.inputs.insert(MethodInput::kImu);
   return method;

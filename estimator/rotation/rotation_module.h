@@ -19,7 +19,7 @@ struct RotationConfig {
 
   Method method = Method::kEvents;
   RotationOptions events;
-  OrientationOptions orientation;  ///< of kImu, which takes what was known by the time of a rate
+  OrientationOptions orientation;  ///< of kImu
   double averaging_s = 0;          ///< of kImu
   GyroscopeNoise gyroscope;        ///< of kBoth
   std::uint64_t seed = 1;

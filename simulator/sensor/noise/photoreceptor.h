@@ -63,9 +63,10 @@ class PhotoreceptorFilter {
  private:
   static constexpr double kMemory = 10;
 
-  /// 2 pi f_c [1/s].
+  /// 2 pi f_c [1/s]; never so small that it is nothing.
   [[nodiscard]] double rate_at(double radiance) const {
-    return std::min(max_rate_, rate_per_radiance_ * (radiance + options_.dark_radiance));
+    constexpr double kLeast = 1e-9;
+    return std::clamp(rate_per_radiance_ * (radiance + options_.dark_radiance), kLeast, max_rate_);
   }
 
   BandwidthOptions options_;

@@ -289,7 +289,7 @@ void PixelSensor<Signal, Emit>::follow_lines(Lines& lines, const Sample& lo, con
     const LinearPiece input{now.t_s, next.t_s, now.log_intensity, next.log_intensity};
     // I where ln(eps + I) is half way.
     const double middle_radiance =
-        std::sqrt((log_eps_ + radiance) * (log_eps_ + lines.radiance())) - log_eps_;
+        std::max(0.0, std::sqrt((log_eps_ + radiance) * (log_eps_ + lines.radiance())) - log_eps_);
     sense_piece(input, noise.filter.piece(noisy.filter, input, middle_radiance), noise, noisy);
     now = next;
   }

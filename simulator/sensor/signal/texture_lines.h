@@ -142,9 +142,18 @@ class TextureLines {
   }
 
   [[nodiscard]] double value_at(int cell, double u) const {
-    return factor_ * Bilinear(cells_.corners(cell))
-                         .at(path_.x.at(u) - static_cast<double>(cells_.i(cell)),
-                             path_.y.at(u) - static_cast<double>(cells_.j(cell)));
+    const Place place = place_at(cell, path_.x.at(u), path_.y.at(u));
+    return factor_ * Bilinear(cells_.corners(cell)).at(place.x, place.y);
+  }
+
+  /// Within a cell, 0 to 1. Where the path leaves it is known to a small part of a texel alone, and
+  /// what its texels give beyond it may be less than nothing.
+  struct Place {
+    double x, y;
+  };
+  [[nodiscard]] Place place_at(int cell, double x, double y) const {
+    return {std::clamp(x - static_cast<double>(cells_.i(cell)), 0.0, 1.0),
+            std::clamp(y - static_cast<double>(cells_.j(cell)), 0.0, 1.0)};
   }
 
   struct Bilinear {
@@ -169,13 +178,13 @@ class TextureLines {
     const double end = std::min(cells_.end(cell), to);
     const double length = end - from;
     const Bilinear texels(cells_.corners(cell));
-    const double x = path_.x.at(from) - static_cast<double>(cells_.i(cell));
-    const double y = path_.y.at(from) - static_cast<double>(cells_.j(cell));
-    const double p = path_.x.at(end) - static_cast<double>(cells_.i(cell)) - x;
-    const double q = path_.y.at(end) - static_cast<double>(cells_.j(cell)) - y;
-    const Parabola along{factor_ * texels.at(x, y),
-                         factor_ * (p * (texels.along_x + texels.twist * y) +
-                                    q * (texels.along_y + texels.twist * x)),
+    const Place first = place_at(cell, path_.x.at(from), path_.y.at(from));
+    const Place last = place_at(cell, path_.x.at(end), path_.y.at(end));
+    const double p = last.x - first.x;
+    const double q = last.y - first.y;
+    const Parabola along{factor_ * texels.at(first.x, first.y),
+                         factor_ * (p * (texels.along_x + texels.twist * first.y) +
+                                    q * (texels.along_y + texels.twist * first.x)),
                          factor_ * texels.twist * p * q};
     const double margin = factor_ * path_bending() * texels.steepest() * length * length;
     const double low = band.low + margin;
@@ -226,8 +235,8 @@ class TextureLines {
       const double x1 = path_.x.at(u1);
       const double y1 = path_.y.at(u1);
       const Bilinear texels(cells_.corners(cell));
-      values_[k] = factor_ * texels.at(x1 - static_cast<double>(cells_.i(cell)),
-                                       y1 - static_cast<double>(cells_.j(cell)));
+      const Place place = place_at(cell, x1, y1);
+      values_[k] = factor_ * texels.at(place.x, place.y);
       // Along the chord the bilinear function is a parabola; the path departs from the chord.
       const double length = std::max(u1 - u0, kShortest);
       const double bend = 0.25 * std::abs(texels.twist * (x1 - x0) * (y1 - y0));

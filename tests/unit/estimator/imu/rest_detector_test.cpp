@@ -50,6 +50,20 @@ TEST(RestDetector, CountsAllOfARest) {
             4 * std::sqrt(3) * kDensity / std::sqrt(2.0));
 }
 
+TEST(RestDetector, RestsOnlyWhereTheSamplesMay) {
+  RestDetector detector(kDensity);
+  const ImuMotion still = turning({0, 0, 1}, [](double) { return 0.0; });
+  int first = -1, nearly = -1;
+  for (int i = 0; i < 2000 && first < 0; ++i) {
+    ImuSample sample = reading(still, i, 5, kErrors);
+    sample.may_rest = i >= 300 && i != 650;
+    const auto rest = detector.add(sample, kReading_s, {0, 0, 0}, 0.1);
+    if (rest) (rest->is_complete ? first : nearly) = i;
+  }
+  EXPECT_EQ(nearly, 499);  // the first two windows whose samples all may
+  EXPECT_EQ(first, 1099);  // four from 0.7 s on, the one after that of the last which may not
+}
+
 TEST(RestDetector, ATurnThatComesToRestIsNoneBefore) {
   // About the vertical, so that gravity tells nothing; the rate falls from 0.3 rad/s to 0 in 2 s.
   const Found found = find(

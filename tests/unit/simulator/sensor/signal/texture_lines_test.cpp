@@ -96,6 +96,31 @@ TEST(TextureLines, StayWithinTheLimits) {
   }
 }
 
+// Where a path crosses a border is known to a part of a texel alone: beyond it the texels of a cell
+// that ends in black would give less than nothing, whose logarithm is none.
+TEST(TextureLines, HaveNoRadianceBelowTheTexels) {
+  ImageF checks(16, 12);
+  for (int y = 0; y < checks.height(); ++y)
+    for (int x = 0; x < checks.width(); ++x) checks(x, y) = (x + y) % 2 == 0 ? 1.0F : 0.0F;
+  const Texture texture(checks);
+  for (int k = 0; k < 200; ++k) {
+    // Paths that are as even as those whose crossings are not searched for.
+    const double bend = 0.2 * std::sin(k);
+    const TexelTrajectory path{{3.2 + 0.01 * k, 8.2, 7.3 + 0.01 * k, 8.2, 11.4 + 0.01 * k, 8.2},
+                               {8.3, -4.2 + bend, 6.2, -4.2, 4.1, -4.2 - bend},
+                               2.0,
+                               0.01};
+    const PathCells cells(texture, TexelBorders(path.x), TexelBorders(path.y));
+    TextureLines lines(path, cells, 1000, 1e-9, kLimits, 0);
+    EXPECT_GE(lines.run_within({-1, 2000}, 1).least, 0);
+    for (int n = 0; n < 100000 && lines.u() < 1; ++n) {
+      lines.advance(1, kLeast);
+      ASSERT_GE(lines.radiance(), 0) << k;
+      ASSERT_LE(lines.radiance(), 1000) << k;
+    }
+  }
+}
+
 // One line goes as far over a smooth texture as its change allows.
 TEST(TextureLines, GoOverManyCellsOfASmoothTexture) {
   ImageF ramp(16, 12);
