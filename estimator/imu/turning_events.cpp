@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include "core/io/events/event_queue.h"
-#include "core/rigid3.h"
+#include "core/time_search.h"
 #include "estimator/imu/rest_detector.h"
 
 namespace saccade {
@@ -48,13 +49,31 @@ struct SampleWindow {
       force += sample.specific_force / static_cast<double>(some.size());
     }
   }
-  [[nodiscard]] double length_s() const {
-    return seconds_from_ns(samples.back().t_ns - samples.front().t_ns);
-  }
+  [[nodiscard]] TimeNs begin_ns() const { return samples.front().t_ns; }
+  [[nodiscard]] TimeNs end_ns() const { return samples.back().t_ns; }
   [[nodiscard]] bool might_rest() const {
     return rate.norm() < kFastestRest && std::abs(force.norm() - kGravity_m_s2) < kMaxForceError;
   }
+  /// How far the image moves at that rate.
+  [[nodiscard]] double motion_px(const PinholeCamera& camera) const {
+    const double reach_px = std::max({camera.fx, camera.fy, 0.5 * camera.width});
+    return rate.norm() * seconds_from_ns(end_ns() - begin_ns()) * reach_px;
+  }
 };
+
+/// In order: those in which the sensor might be at rest, or turn so fast that it shows.
+std::vector<SampleWindow> windows_in_doubt(std::span<ImuSample> samples,
+                                           const PinholeCamera& camera) {
+  std::vector<SampleWindow> windows;
+  for (std::size_t begin = 0, end = 0; begin < samples.size(); begin = end) {
+    const TimeNs until_ns = samples[begin].t_ns + ns_from_seconds(kWindow_s);
+    for (end = begin + 1; end < samples.size() && samples[end].t_ns < until_ns;) ++end;
+    const SampleWindow window(samples.subspan(begin, end - begin));
+    if (window.might_rest() && window.motion_px(camera) >= kLeastMotion_px)
+      windows.push_back(window);
+  }
+  return windows;
+}
 
 }  // namespace
 
@@ -91,24 +110,23 @@ bool TurningEvents::show_turn() const {
 }
 
 void mark_turns(ImuInput& imu, const Dataset& dataset) {
-  const PinholeCamera& camera = dataset.camera();
-  const double reach_px = std::max({camera.fx, camera.fy, 0.5 * camera.width});
-  const std::span<ImuSample> samples(imu.samples);
-  for (std::size_t begin = 0, end = 0; begin < samples.size(); begin = end) {
-    const TimeNs until_ns = samples[begin].t_ns + ns_from_seconds(kWindow_s);
-    for (end = begin + 1; end < samples.size() && samples[end].t_ns < until_ns;) ++end;
-    const SampleWindow window(samples.subspan(begin, end - begin));
-    if (!window.might_rest() || window.rate.norm() * window.length_s() * reach_px < kLeastMotion_px)
-      continue;
-    const TimeNs first_ns = window.samples.front().t_ns;
-    const TimeNs last_ns = window.samples.back().t_ns;
-    TurningEvents turning(camera, imu.camera_from_imu * window.rate,
-                          first_ns + (last_ns - first_ns) / 2);
-    EventQueue events(dataset.stream_events({first_ns, last_ns}));
+  const std::vector<SampleWindow> windows = windows_in_doubt(imu.samples, dataset.camera());
+  if (windows.empty()) return;
+  // One pass over the events: not every format finds a time but by reading all before it.
+  EventQueue events(dataset.stream_events({windows.front().begin_ns(), windows.back().end_ns()}));
+  const auto pass_to = [&](TimeNs until_ns, const auto& use) {
     for (auto ahead = events.ahead(kBatch); !ahead.empty(); ahead = events.ahead(kBatch)) {
-      turning.add(ahead);
-      events.drop(ahead.size());
+      const std::span<const Event> before = ahead.first(count_before(ahead, until_ns));
+      use(before);
+      events.drop(before.size());
+      if (before.size() < ahead.size()) break;
     }
+  };
+  for (const SampleWindow& window : windows) {
+    TurningEvents turning(dataset.camera(), imu.camera_from_imu * window.rate,
+                          window.begin_ns() + (window.end_ns() - window.begin_ns()) / 2);
+    pass_to(window.begin_ns(), [](std::span<const Event>) {});
+    pass_to(window.end_ns(), [&](std::span<const Event> some) { turning.add(some); });
     if (turning.show_turn())
       for (ImuSample& sample : window.samples) sample.may_rest = false;
   }

@@ -36,8 +36,8 @@ class TurningEvents {
 
 /// Marks the samples of windows in which the sensor might be at rest by what it reads
 /// (RestDetector), but the dataset's events show that it turns, as may_rest = false. A slow pan at a
-/// constant rate about the vertical differs from a bias in nothing else. Reads the events of such
-/// windows alone.
+/// constant rate about the vertical differs from a bias in nothing else. Reads the events once, from
+/// the first such window to the last.
 void mark_turns(ImuInput& imu, const Dataset& dataset);
 
 }  // namespace saccade
