@@ -28,19 +28,5 @@ TEST(LargeVector, ItsMemoryIsAligned) {
   EXPECT_EQ(reinterpret_cast<std::uintptr_t>(many.data()) % 64, 0U);
 }
 
-TEST(LargeVector, GrowingBySmallPartsCopiesSeldom) {
-  LargeVector<int> items;
-  std::size_t moves = 0;
-  const int* before = nullptr;
-  for (int part = 0; part < 1000; ++part) {
-    reserve_more(items, 10);
-    if (items.data() != before) ++moves;
-    before = items.data();
-    items.insert(items.end(), 10, part);
-  }
-  EXPECT_EQ(items.size(), 10000U);
-  EXPECT_LE(moves, 12U);
-}
-
 }  // namespace
 }  // namespace saccade
