@@ -38,9 +38,9 @@ struct SmoothingOptions {
   return world_from_camera * so3_exp({0, 0, roll});
 }
 
-/// What orientations would be before the first and after the last, for `reach_s` at most: what is known
-/// turned about its ends, q(T + s) = q(T) q(T - s)^-1 q(T), so that a turn goes on as it is. The poses
-/// are those in the midst.
+/// What orientations would be before the first and after the last, for `reach_s` at most: what is
+/// known turned about its ends, q(T + s) = q(T) q(T - s)^-1 q(T), so that a turn goes on as it is.
+/// The known ones stand in the midst.
 struct ExtendedOrientations {
   std::vector<StampedPose> poses;
   std::size_t before = 0;  ///< added before the first
@@ -79,7 +79,7 @@ struct ExtendedOrientations {
   if (poses.empty()) return {};
   const double max_angle = options.max_angle_deg * std::numbers::pi / 180;
   const bool is_centred = options.low_pass == SmoothingOptions::LowPass::kCentred;
-  // Beyond this many time constants e^-4 of a lag is left.
+  // After so many time constants 2 % of a lag is left.
   constexpr double kReach = 4;
   const ExtendedOrientations all =
       extended(poses, is_centred ? kReach * options.time_constant_s : 0);

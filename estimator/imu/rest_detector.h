@@ -29,9 +29,9 @@ struct Rest {
 /// specific force has the magnitude of gravity, the mean rate is a possible bias (below 0.15 rad/s
 /// and within four sigma), and over four windows in a row neither changes by more than noise does:
 /// a turn that slows down, or that tilts the sensor, is none. A slow rotation about the vertical at
-/// a constant rate cannot be told from rest but by ImuSample::may_rest. While nothing is known of the bias, the first two
-/// windows of a slow and nearly constant rate tell it roughly: recordings begin at rest more often
-/// than in a turn.
+/// a constant rate cannot be told from rest but by ImuSample::may_rest. While nothing is known of
+/// the bias, the first two windows of a slow and nearly constant rate tell it roughly: recordings
+/// begin at rest more often than in a turn.
 class RestDetector {
  public:
   /// `gyro_noise_density` [rad/s/sqrt(Hz)].

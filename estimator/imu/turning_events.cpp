@@ -21,8 +21,9 @@ constexpr double kLeastMotion_px = 2;
 constexpr double kFastestRest = 0.3;  // [rad/s]
 /// With fewer events the two images differ by chance alone.
 constexpr std::size_t kLeastEvents = 500;
-/// Of the sharpness along over that against the turn. Simulated cameras at rest have 0.99 to 1.01, with a
-/// DAVIS240C's noise; ones that turn at 0.03 to 0.12 rad/s beside a bias of 0.09 have 1.2 to 3.1.
+/// Of the sharpness along over that against the turn. Simulated cameras at rest have 0.99 to 1.01,
+/// with a DAVIS240C's noise; ones that turn at 0.03 to 0.12 rad/s beside a bias of 0.09 have 1.2 to
+/// 3.1.
 constexpr double kSharper = 1.1;
 /// A hot pixel would draw a line into both images that drowns all else.
 constexpr std::uint8_t kMostPerPixel = 20;

@@ -18,8 +18,8 @@ namespace {
 
 const PinholeCamera kTurningCamera{120, 90, 100, 100, 59.5, 44.5, {}};
 
-/// 300 dots that a camera sees which turns by `rate_rad_s` about its y axis (all that it sees moves to
-/// the left), each with an event whenever it comes to another pixel, and `noise` events anywhere.
+/// 300 dots that a camera sees which turns by `rate_rad_s` about its y axis (all that it sees moves
+/// to the left), each with an event whenever it comes to another pixel, and `noise` events anywhere.
 Events seen(double rate_rad_s, double duration_s, int noise, std::uint64_t seed) {
   const Random random(seed);
   Events events;
@@ -75,7 +75,8 @@ TEST(TurningEvents, AHotPixelAndFewEventsTellNothing) {
   EXPECT_FALSE(show_turn({}, 0.15));
 }
 
-/// A dataset of three times 0.4 s: a pan, rest and a pan, all of which the gyroscope reads as 0.15 rad/s.
+/// A dataset of three times 0.4 s: a pan, rest and a pan, all of which the gyroscope reads as 0.15
+/// rad/s.
 class MarkTurns : public testing::SharedFolder<MarkTurns> {
  public:
   static void fill() {
