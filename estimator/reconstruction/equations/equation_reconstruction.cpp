@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/process/parallel.h"
 #include "core/stopwatch.h"
 #include "estimator/reconstruction/equations/event_runs.h"
 #include "estimator/reconstruction/equations/intensity_system.h"
@@ -14,6 +15,9 @@
 namespace saccade {
 namespace {
 
+/// Bands of the sensor's rows, whose event runs threads work on by themselves. Their number decides in which order
+/// sums are taken, so it does not depend on the number of threads.
+constexpr std::size_t kBands = 8;
 /// Rounds of reweighting: the first with quadratic costs, the second with robust ones.
 constexpr int kRounds = 2;
 /// Conjugate gradient iterations per round, at most.
@@ -61,16 +65,21 @@ void reweight(GridObservation& target, float log_intensity, const ObservationKin
   target.weight = kind.weight / (1 + ratio * ratio * kind.weight);
 }
 
-/// All observations; `image` is that of the round before, empty in the first.
-void add_observations(IntensitySystem& system, const ReferenceGrid& grid, const EventRuns& runs,
-                      const ImageF& image, float bound_sigma) {
+/// All observations of a part; `image` is that of the round before, empty in the first.
+void add_observations(IntensitySystem& system, std::size_t part, const ReferenceGrid& grid,
+                      const EventRuns& runs, const ImageF& image, float bound_sigma) {
+  system.reserve(part, runs.size());
   std::vector<GridObservation> targets;
   std::vector<float> values;
   runs.for_each([&](std::span<const IntensityObservation> run) {
     if (run.size() < 2) return;
     targets.resize(run.size());
     values.resize(run.size());
-    for (std::size_t k = 0; k < run.size(); ++k) targets[k].point = grid.at(run[k].x, run[k].y);
+    for (std::size_t k = 0; k < run.size(); ++k) {
+      targets[k].x = run[k].x;
+      targets[k].y = run[k].y;
+      targets[k].point = grid.at(run[k].x, run[k].y);
+    }
     if (image.empty()) {
       for (std::size_t k = 0; k < run.size(); ++k) {
         const ObservationKind& kind = runs.kind(run[k]);
@@ -84,7 +93,7 @@ void add_observations(IntensitySystem& system, const ReferenceGrid& grid, const 
         reweight(targets[k], run[k].log_intensity, runs.kind(run[k]), values[k] - offset,
                  bound_sigma);
     }
-    system.add_run(targets);
+    system.add_run(part, targets);
   });
 }
 
@@ -113,13 +122,10 @@ void add_smoothness(IntensitySystem& system, const ReferenceGrid& grid,
     }
 }
 
-/// The gradient of `image` by central differences; its covariance from the displacements h of the
-/// runs over a pixel, (I / P0 + sum h h^T / R)^-1 as in the filter.
-std::vector<GradientState> gradient_states(const ReferenceGrid& grid, const ImageF& image,
-                                           const EventRuns& runs) {
-  std::vector<GradientState> states(image.size());
-  const auto prior = static_cast<float>(1 / (kGradientPriorSigma * kGradientPriorSigma));
-  for (GradientState& s : states) s.pxx = s.pyy = prior;
+/// Adds the information h h^T / R on the gradient by the displacements h of the runs over a pixel, as in
+/// the filter.
+void add_information(const ReferenceGrid& grid, const EventRuns& runs,
+                     std::vector<GradientState>& states) {
   runs.for_each([&](std::span<const IntensityObservation> run) {
     for (std::size_t k = 1; k < run.size(); ++k) {
       const IntensityObservation& to = run[k];
@@ -132,6 +138,24 @@ std::vector<GradientState> gradient_states(const ReferenceGrid& grid, const Imag
       s.pyy += weight * hy * hy;
     }
   });
+}
+
+/// The gradient of `image` by central differences; its covariance (I / P0 + sum h h^T / R)^-1.
+std::vector<GradientState> gradient_states(const ReferenceGrid& grid, const ImageF& image,
+                                           std::span<const EventRuns> bands) {
+  std::vector<std::vector<GradientState>> parts(bands.size(),
+                                                std::vector<GradientState>(image.size()));
+  parallel_for(bands.size(),
+               [&](std::size_t band) { add_information(grid, bands[band], parts[band]); });
+  std::vector<GradientState> states(image.size());
+  const auto prior = static_cast<float>(1 / (kGradientPriorSigma * kGradientPriorSigma));
+  for (GradientState& s : states) s.pxx = s.pyy = prior;
+  for (const std::vector<GradientState>& part : parts)
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      states[i].pxx += part[i].pxx;
+      states[i].pxy += part[i].pxy;
+      states[i].pyy += part[i].pyy;
+    }
   for (int y = 0; y < image.height(); ++y)
     for (int x = 0; x < image.width(); ++x) {
       GradientState& s = states[static_cast<std::size_t>(y * image.width() + x)];
@@ -176,24 +200,29 @@ Reconstruction EquationReconstruction::solve(ObservationSource& source,
   // The observations take about as long as the rest.
   constexpr double kObservationsFraction = 0.5;
   double sort_s = 0, assembly_s = 0, solve_s = 0;
-  EventRuns runs(grid, source.kinds());
-  const double observations_s = source.observe_all(
-      events, world_from_camera, [&](std::span<const IntensityObservation> part, double fraction) {
-        runs.add(part);
+  std::vector<EventRuns> bands(kBands, EventRuns(grid, source.kinds()));
+  const double observations_s = source.observe(
+      events, world_from_camera, kBands,
+      [&](std::size_t band, std::span<const IntensityObservation> part) { bands[band].add(part); },
+      [&](double fraction) {
         if (progress) progress(kObservationsFraction * fraction);
       });
   {
     const ScopedTimer clock(sort_s);
-    runs.sort_by_run(static_cast<float>(options_.merge_radius_px));
+    parallel_for(kBands, [&](std::size_t band) {
+      bands[band].sort_by_run(static_cast<float>(options_.merge_radius_px));
+    });
   }
   ImageF image;
-  IntensitySystem system(grid.width(), grid.height(), grid.wraps());
+  IntensitySystem system(grid.width(), grid.height(), grid.wraps(), kBands);
   for (int round = 0; round < kRounds; ++round) {
     {
       const ScopedTimer clock(assembly_s);
       system.clear();
-      system.reserve(runs.size());
-      add_observations(system, grid, runs, image, static_cast<float>(options_.bound_sigma));
+      parallel_for(kBands, [&](std::size_t band) {
+        add_observations(system, band, grid, bands[band], image,
+                         static_cast<float>(options_.bound_sigma));
+      });
       add_smoothness(system, grid, options_, image);
     }
     {
@@ -206,8 +235,8 @@ Reconstruction EquationReconstruction::solve(ObservationSource& source,
   Reconstruction result;
   result.log_image = std::move(image);
   subtract_mean(result.log_image);
-  set_gradient(result, grid, gradient_states(grid, result.log_image, runs));
-  result.observations = runs.size();
+  set_gradient(result, grid, gradient_states(grid, result.log_image, bands));
+  for (const EventRuns& band : bands) result.observations += band.size();
   result.stages_s = {{"observations", observations_s},
                      {"sort", sort_s},
                      {"assembly", assembly_s},

@@ -16,7 +16,7 @@ struct EquationOptions {
   ObservationOptions observations{
       .event_sigma = 0.075,
       .run_events = 12,
-      .no_event_spacing_px = 0.7,
+      .no_event_spacing_px = 0.85,
       .no_event_stride = 4,
       .dense_events_per_px = 40,
       .expected_fraction = 0.4,
@@ -32,7 +32,7 @@ struct EquationOptions {
   /// flatten, the absolute differences of the second do not bring back.
   double first_smoothness = 4;
   double bound_sigma = 0.3;  ///< of no-event constraints, from the second round on [log units]
-  double tolerance = 0.005;  ///< of the relative residual of conjugate gradients
+  double tolerance = 0.01;   ///< of the relative residual of conjugate gradients
 };
 
 void describe(config::Fields& fields, EquationOptions& options);

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "core/check.h"
-#include "estimator/reconstruction/gradient/poisson.h"
+#include "core/process/parallel.h"
 
 namespace saccade {
 namespace {
@@ -26,13 +26,17 @@ constexpr std::size_t kProducts = 10;
 constexpr std::array<std::size_t, kProducts> kCorner = {0, 0, 0, 0, 1, 1, 1, 2, 2, 3};
 constexpr std::array<std::size_t, kProducts> kNeighbour = {0, 1, 3, 4, 0, 2, 3, 0, 1, 0};
 
-/// Four values of a square.
-using Corners = float __attribute__((vector_size(4 * sizeof(float))));
-
-Corners corners_of(const float* values) {
-  Corners corners;
-  std::memcpy(&corners, values, sizeof corners);
-  return corners;
+Corners corners_of(const std::array<std::uint16_t, 4>& steps) {
+  using Words = std::uint64_t __attribute__((vector_size(2 * sizeof(std::uint64_t))));
+  using Halves = std::uint16_t __attribute__((vector_size(8 * sizeof(std::uint16_t))));
+  using Integers = std::int32_t __attribute__((vector_size(4 * sizeof(std::int32_t))));
+  std::uint64_t word = 0;
+  std::memcpy(&word, steps.data(), sizeof word);
+  const auto halves = reinterpret_cast<Halves>(Words{word, 0});
+  // Zeros as upper halves: the compiler would convert half a register in two steps.
+  return __builtin_convertvector(reinterpret_cast<Integers>(__builtin_shufflevector(
+                                     halves, Halves{}, 0, 8, 1, 9, 2, 10, 3, 11)),
+                                 Corners);
 }
 
 /// Two of them at a time.
@@ -51,75 +55,148 @@ double dot(const std::vector<float>& a, const std::vector<float>& b) {
   return sum;
 }
 
-/// M^-1 = S^-1 F^-1 S^-1 with S^2 the diagonal and F = q / (q + 1 / variance) in the cosine domain,
-/// q the eigenvalue of -lap: the fraction of a wave's power that varies along a run.
-class CosinePreconditioner {
+/// The sum of the inverses of the diagonal and of the coarse grid.
+class Preconditioner {
  public:
-  CosinePreconditioner(int width, int height, const std::vector<float>& diagonal, double variance)
-      : buffer_(width, height) {
+  Preconditioner(const std::vector<float>& diagonal, const CoarseGrid& grid,
+                 std::span<const Stiffness> stiffness)
+      : coarse_(grid, stiffness) {
     const double mean = std::accumulate(diagonal.begin(), diagonal.end(), 0.0) /
                         static_cast<double>(diagonal.size());
-    for (const float d : diagonal)
-      scale_.push_back(1 / std::sqrt(std::max(d, static_cast<float>(1e-6 * mean))));
-    for (int l = 0; l < height; ++l)
-      for (int k = 0; k < width; ++k)
-        factor_.push_back(static_cast<float>(
-            1 + 1 / (variance * (neumann_eigenvalue(k, l, width, height) + 1e-6))));
+    const auto least = static_cast<float>(1e-6 * mean);  // of pixels that nothing constrains
+    for (const float d : diagonal) over_diagonal_.push_back(1 / std::max(d, least));
   }
 
-  void apply(const std::vector<float>& r, std::vector<float>& z) {
-    for (std::size_t i = 0; i < r.size(); ++i) buffer_.pixels()[i] = r[i] * scale_[i];
-    cosine_transform(buffer_);
-    for (std::size_t i = 0; i < r.size(); ++i) buffer_.pixels()[i] *= factor_[i];
-    inverse_cosine_transform(buffer_);
-    for (std::size_t i = 0; i < r.size(); ++i) z[i] = buffer_.pixels()[i] * scale_[i];
+  void apply(const std::vector<float>& r, std::vector<float>& z) const {
+    for (std::size_t i = 0; i < r.size(); ++i) z[i] = over_diagonal_[i] * r[i];
+    coarse_.add(r, z);
   }
 
  private:
-  ImageF buffer_;
-  std::vector<float> scale_;
-  std::vector<float> factor_;
+  std::vector<float> over_diagonal_;
+  CoarseImage coarse_;
+};
+
+/// Weights of a run's observations as whole steps, so that what is stored of them in steps (Entry) is what they are:
+/// the factors of a run then sum to one exactly, and the constant of the image costs nothing.
+class WeightSteps {
+ public:
+  explicit WeightSteps(std::span<const GridObservation> observations) {
+    float largest = 0;
+    for (const GridObservation& o : observations) largest = std::max(largest, o.weight);
+    weight_ = largest / kMost;
+    per_weight_ = largest > 0 ? kMost / largest : 0;
+  }
+  [[nodiscard]] float of(const GridObservation& o) const {
+    return std::floor(o.weight * per_weight_ + 0.5F);
+  }
+  /// Of one step.
+  [[nodiscard]] float weight() const { return weight_; }
+
+ private:
+  static constexpr float kMost = 65535;
+  float weight_, per_weight_;
+};
+
+/// Means over the observations of a run.
+struct RunMoments {
+  double steps = 0;  ///< sum of their weights
+  float log_intensity = 0;
+  float xx = 0, xy = 0, yy = 0;  ///< covariance of the places [px^2]
+
+  RunMoments(std::span<const GridObservation> observations, const WeightSteps& weights) {
+    const GridObservation& head = observations.front();
+    double l = 0, x = 0, y = 0, x2 = 0, y2 = 0, x_y = 0;
+    for (const GridObservation& o : observations) {
+      const auto w = static_cast<double>(weights.of(o));
+      const auto dx = static_cast<double>(o.x - head.x), dy = static_cast<double>(o.y - head.y);
+      steps += w;
+      l += w * static_cast<double>(o.log_intensity - head.log_intensity);
+      x += w * dx;
+      y += w * dy;
+      x2 += w * dx * dx;
+      y2 += w * dy * dy;
+      x_y += w * dx * dy;
+    }
+    if (!(steps > 0)) return;
+    const double over = 1 / steps;
+    x *= over;
+    y *= over;
+    log_intensity = head.log_intensity + static_cast<float>(l * over);
+    xx = std::max(static_cast<float>(x2 * over - x * x), 0.0F);
+    xy = static_cast<float>(x_y * over - x * y);
+    yy = std::max(static_cast<float>(y2 * over - y * y), 0.0F);
+  }
 };
 
 }  // namespace
 
-IntensitySystem::IntensitySystem(int width, int height, bool wraps)
+IntensitySystem::IntensitySystem(int width, int height, bool wraps, std::size_t parts)
     : width_(width),
       height_(height),
       columns_(wraps ? width + 1 : width),
       rows_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(height)),
-      cells_(rows_.size()) {
-  SACCADE_CHECK(width > (wraps ? 2 : 1) && height > 1);
+      coarse_(width, height, wraps),
+      smoothness_(coarse_.cells()),
+      parts_(parts) {
+  SACCADE_CHECK(width > (wraps ? 2 : 1) && height > 1 && parts > 0);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < columns_; ++x)
+      coarse_cell_.push_back(
+          static_cast<std::uint32_t>(coarse_.cell_of(x < width ? x : x - width, y)));
+  for (Part& part : parts_) {
+    part.cells.resize(rows_.size());
+    part.stiffness.resize(coarse_.cells());
+  }
 }
 
 void IntensitySystem::clear() {
   std::fill(rows_.begin(), rows_.end(), std::array<float, kNeighbours>{});
-  std::fill(cells_.begin(), cells_.end(), Lanes{});
-  entries_.clear();
-  runs_.clear();
+  for (Part& part : parts_) {
+    const auto cells = part.cells.begin();
+    std::fill(cells + static_cast<std::ptrdiff_t>(part.first),
+              cells + static_cast<std::ptrdiff_t>(part.end), Lanes{});
+    part.entries.clear();
+    part.runs.clear();
+    part.first = part.end = 0;
+    std::fill(part.stiffness.begin(), part.stiffness.end(), Stiffness{});
+  }
+  std::fill(smoothness_.begin(), smoothness_.end(), Stiffness{});
 }
 
-void IntensitySystem::add_run(std::span<const GridObservation> observations) {
-  double weight = 0, log_intensity = 0;
+void IntensitySystem::add_run(std::size_t part, std::span<const GridObservation> observations) {
+  const WeightSteps weights(observations);
+  const RunMoments moments(observations, weights);
+  if (!(moments.steps > 0)) return;
+  Part& own = parts_[part];
+  if (own.entries.empty()) own.first = rows_.size();
+  std::uint32_t count = 0;
   for (const GridObservation& o : observations) {
-    weight += static_cast<double>(o.weight);
-    log_intensity +=
-        static_cast<double>(o.weight * (o.log_intensity - observations.front().log_intensity));
+    const float steps = weights.of(o);
+    if (steps == 0) continue;
+    Entry& entry = own.entries.emplace_back();
+    entry.index = unrolled(o.point.index[0]);
+    // What the first three are rounded down by goes to the last: a ten-thousandth of a pixel.
+    std::array<float, 4> f{};
+    f[3] = steps;
+    for (std::size_t k = 0; k < 3; ++k) {
+      f[k] = std::floor(steps * o.point.weight[k]);
+      f[3] -= f[k];
+    }
+    for (std::size_t k = 0; k < 4; ++k) entry.steps[k] = static_cast<std::uint16_t>(f[k]);
+    const Lanes row = {f[0], f[1], f[2], f[3], steps * (o.log_intensity - moments.log_intensity)};
+    const auto cell = static_cast<std::size_t>(entry.index);
+    own.cells[cell] += products(weights.weight() / steps, row);
+    own.first = std::min(own.first, cell);
+    own.end = std::max(own.end, cell + 1);
+    // The run's observations, taken together, know the slope along itself by the covariance of their places.
+    const float weight = weights.weight() * steps;
+    own.stiffness[coarse_cell_[cell]] +=
+        {weight * moments.xx, weight * moments.xy, weight * moments.yy};
+    ++count;
   }
-  if (!(weight > 0)) return;
-  const float mean =
-      observations.front().log_intensity + static_cast<float>(log_intensity / weight);
-  const auto scale = static_cast<float>(1 / weight);
-  const std::size_t begin = entries_.size();
-  for (const GridObservation& o : observations) {
-    const auto& f = o.point.weight;
-    const Lanes row = {f[0], f[1], f[2], f[3], o.log_intensity - mean};
-    const int first = unrolled(o.point.index[0]);
-    cells_[static_cast<std::size_t>(first)] += products(o.weight, row);
-    const float w = o.weight * scale;
-    entries_.push_back({first, {w * f[0], w * f[1], w * f[2], w * f[3]}});
-  }
-  runs_.push_back({begin, entries_.size(), static_cast<float>(weight)});
+  own.runs.push_back({count, weights.weight() * static_cast<float>(moments.steps),
+                      static_cast<float>(1 / moments.steps)});
 }
 
 void IntensitySystem::add_smoothness_term(int i, int j, float weight) {
@@ -130,35 +207,17 @@ void IntensitySystem::add_smoothness_term(int i, int j, float weight) {
   const int second = is_at_seam ? first + 1 : unrolled(upper);
   rows_[static_cast<std::size_t>(first)][0] += weight;
   rows_[static_cast<std::size_t>(second)][0] += weight;
-  rows_[static_cast<std::size_t>(first)][second == first + 1 ? 1 : 3] -= weight;
+  const bool is_beside = second == first + 1;
+  rows_[static_cast<std::size_t>(first)][is_beside ? 1 : 3] -= weight;
+  Stiffness& stiffness = smoothness_[coarse_cell_[static_cast<std::size_t>(first)]];
+  (is_beside ? stiffness.xx : stiffness.yy) += weight;
 }
 
-double IntensitySystem::run_variance() const {
-  double sum = 0, weight = 0;
-  constexpr std::size_t kEvery = 8;  // a sample of the runs is enough for a mean
-  // Columns of a run that crosses the seam continue beyond it.
-  const auto continued = [this](int column, int other) {
-    if (!wraps() || std::abs(column - other) <= width_ / 2) return column;
-    return column < other ? column + width_ : column - width_;
-  };
-  for (std::size_t t = 0; t < runs_.size(); t += kEvery) {
-    const Run& run = runs_[t];
-    const int first_column = entries_[run.begin].index % columns_;
-    double x = 0, y = 0, square = 0;
-    for (std::size_t k = run.begin; k < run.end; ++k) {
-      const Entry& entry = entries_[k];
-      const double u = continued(entry.index % columns_, first_column);
-      const double v = entry.index / columns_;
-      const auto f = static_cast<double>(entry.factor[0] + entry.factor[1] + entry.factor[2] +
-                                         entry.factor[3]);
-      x += f * u;
-      y += f * v;
-      square += f * (u * u + v * v);
-    }
-    sum += static_cast<double>(run.weight) * (square - x * x - y * y) / 2;
-    weight += static_cast<double>(run.weight);
-  }
-  return weight > 0 ? std::max(sum / weight, 0.25) : 0.25;
+std::vector<Stiffness> IntensitySystem::stiffness() const {
+  std::vector<Stiffness> sum = smoothness_;
+  for (const Part& part : parts_)
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += part.stiffness[i];
+  return sum;
 }
 
 IntensitySystem::Stencil IntensitySystem::stencil(std::vector<float>& right_side) const {
@@ -169,12 +228,13 @@ IntensitySystem::Stencil IntensitySystem::stencil(std::vector<float>& right_side
   }
   const auto width = static_cast<std::size_t>(columns_);
   const std::array<std::size_t, 4> corner = {0, 1, width, width + 1};
-  for (std::size_t i = 0; i + width + 1 < rows_.size(); ++i) {
-    const Lanes& cell = cells_[i];
-    for (std::size_t p = 0; p < kProducts; ++p)
-      stencil[kNeighbour[p]][i + corner[kCorner[p]]] += cell[p];
-    for (std::size_t k = 0; k < 4; ++k) right_side[i + corner[k]] += cell[kProducts + k];
-  }
+  for (const Part& part : parts_)
+    for (std::size_t i = part.first; i < part.end; ++i) {
+      const Lanes& cell = part.cells[i];
+      for (std::size_t p = 0; p < kProducts; ++p)
+        stencil[kNeighbour[p]][i + corner[kCorner[p]]] += cell[p];
+      for (std::size_t k = 0; k < 4; ++k) right_side[i + corner[k]] += cell[kProducts + k];
+    }
   return stencil;
 }
 
@@ -199,18 +259,19 @@ std::vector<float> IntensitySystem::folded(const std::vector<float>& sums) const
 }
 
 void IntensitySystem::multiply(const Stencil& stencil, const std::vector<float>& x,
-                               std::vector<float>& y) const {
+                               std::vector<float>& y, PartSums& sums) const {
   if (!wraps()) {
-    multiply_unrolled(stencil, x, y);
+    multiply_unrolled(stencil, x, y, sums);
     return;
   }
-  std::vector<float> sums(rows_.size());
-  multiply_unrolled(stencil, unrolled(x), sums);
-  y = folded(sums);
+  std::vector<float> product(rows_.size());
+  multiply_unrolled(stencil, unrolled(x), product, sums);
+  y = folded(product);
 }
 
 void IntensitySystem::multiply_unrolled(const Stencil& stencil, const std::vector<float>& x,
-                                        std::vector<float>& y) const {
+                                        std::vector<float>& y, PartSums& sums) const {
+  parallel_for(parts_.size(), [&](std::size_t k) { multiply_runs(parts_[k], x, sums[k]); });
   const auto width = static_cast<std::size_t>(columns_);
   const std::size_t offsets[kNeighbours] = {0, 1, width - 1, width, width + 1};
   for (std::size_t i = 0; i < x.size(); ++i) y[i] = stencil[0][i] * x[i];
@@ -223,22 +284,36 @@ void IntensitySystem::multiply_unrolled(const Stencil& stencil, const std::vecto
     float* target = y.data() + offsets[k];
     for (std::size_t i = 0; i < count; ++i) target[i] += factor[i] * x[i];
   }
-  const float* from = x.data();
-  const float* below = from + width;
-  float* to = y.data();
-  float* to_below = to + width;
-  for (const Run& run : runs_) {
-    const std::span<const Entry> entries(entries_.data() + run.begin, run.end - run.begin);
-    Corners sums{};
-    for (const auto& [i, f] : entries)
-      sums += corners_of(f.data()) * corners_at(from + i, below + i);
-    const float mean = (sums[0] + sums[1] + (sums[2] + sums[3])) * run.weight;
-    for (const auto& [i, f] : entries) {
-      to[i] -= f[0] * mean;
-      to[i + 1] -= f[1] * mean;
-      to_below[i] -= f[2] * mean;
-      to_below[i + 1] -= f[3] * mean;
+  for (std::size_t k = 0; k < parts_.size(); ++k) {
+    float* target = y.data() + parts_[k].first;
+    for (const Corners& sum : sums[k]) {
+      target[0] -= sum[0];
+      target[1] -= sum[1];
+      target[width] -= sum[2];
+      target[width + 1] -= sum[3];
+      ++target;
     }
+  }
+}
+
+void IntensitySystem::multiply_runs(const Part& part, const std::vector<float>& x,
+                                    std::vector<Corners>& all_sums) const {
+  if (part.runs.empty()) return;
+  all_sums.assign(part.end - part.first, Corners{});
+  Corners* sums = all_sums.data();
+  const float* from = x.data();
+  const float* below = from + columns_;
+  const auto first = static_cast<std::ptrdiff_t>(part.first);
+  const Entry* entry = part.entries.data();
+  for (const Run& run : part.runs) {
+    const std::span<const Entry> entries(entry, run.entries);
+    entry += run.entries;
+    Corners along{};
+    for (const auto& [i, steps] : entries)
+      along += corners_of(steps) * corners_at(from + i, below + i);
+    const float mean =
+        (along[0] + along[1] + (along[2] + along[3])) * run.weight * run.unit * run.unit;
+    for (const auto& [i, steps] : entries) sums[i - first] += mean * corners_of(steps);
   }
 }
 
@@ -247,21 +322,22 @@ GridSolution IntensitySystem::solve(int iterations, double tolerance, const Imag
   const Stencil stencil = this->stencil(right_side);
   std::vector<float> r = folded(right_side);
   const std::size_t n = r.size();
+  PartSums sums(parts_.size());
   std::vector<float> x(n, 0), z(n), p, q(n);
-  CosinePreconditioner preconditioner(width_, height_, folded(stencil[0]), run_variance());
+  const Preconditioner preconditioner(folded(stencil[0]), coarse_, stiffness());
   GridSolution solution{ImageF(width_, height_), 0, 0};
   preconditioner.apply(r, z);
   const double full = std::max(dot(r, z), 1e-30);
   if (!start.empty()) {
     x.assign(start.pixels().begin(), start.pixels().end());
-    multiply(stencil, x, q);
+    multiply(stencil, x, q, sums);
     for (std::size_t i = 0; i < n; ++i) r[i] -= q[i];
     preconditioner.apply(r, z);
   }
   p = z;
   double rz = dot(r, z);
   while (solution.iterations < iterations && rz > tolerance * tolerance * full) {
-    multiply(stencil, p, q);
+    multiply(stencil, p, q, sums);
     const auto alpha = static_cast<float>(rz / dot(p, q));
     for (std::size_t i = 0; i < n; ++i) {
       x[i] += alpha * p[i];

@@ -2,11 +2,13 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "core/image.h"
 #include "estimator/lanes.h"
+#include "estimator/reconstruction/equations/coarse_image.h"
 
 namespace saccade {
 
@@ -19,6 +21,8 @@ struct GridPoint {
 
 /// An observation of the image between pixels of the grid.
 struct GridObservation {
+  float x,
+      y;  ///< [px]; in an image that wraps they go on beyond its sides, so that a run's path is continuous
   GridPoint point;
   float log_intensity, weight;
 };
@@ -29,28 +33,36 @@ struct GridSolution {
   double residual = 0;  ///< |r| / |b| in the preconditioner's norm
 };
 
+/// Values at the four pixels of a square.
+using Corners = float __attribute__((vector_size(4 * sizeof(float))));
+
 /// Weighted linear least squares over the pixels of an image I and one offset c per event run:
 ///   min over I, c of  sum_k w_k (I(x_k) - c_run(k) - l_k)^2
 /// which leaves a constant of the image undetermined: it stays that of the first guess.
 /// The offsets are eliminated (Schur complement): with m_r the weighted mean of a run's rows and n_r
 /// the sum of its weights, the normal matrix is that of the pixels (a stencil) minus
-/// sum_r n_r m_r m_r^T. Solved by conjugate gradients, preconditioned in the cosine domain: waves
-/// shorter than the runs are observed by every observation, longer ones by their slope only. An image
+/// sum_r n_r m_r m_r^T. Solved by conjugate gradients. Of waves shorter than the runs every observation tells
+/// the value, of longer ones a run tells the slope along itself only, as a diffusion whose tensor is the
+/// covariance of its observations' places. The preconditioner is the sum of the inverses of both: of the diagonal,
+/// and of that diffusion (with the smoothness) on a coarse grid (coarse_image.h). An image
 /// that wraps is unrolled by repeating its first column behind the last one.
 class IntensitySystem {
  public:
-  /// `wraps`: the last column is the first one's neighbour.
-  IntensitySystem(int width, int height, bool wraps = false);
+  /// `wraps`: the last column is the first one's neighbour. `parts` of the runs, which threads add and
+  /// multiply by themselves; their sums are added up in the order of the parts.
+  IntensitySystem(int width, int height, bool wraps = false, std::size_t parts = 1);
 
   /// Removes all terms, but keeps the memory.
   void clear();
 
-  /// Allocates memory for so many observations.
-  void reserve(std::size_t observations) { entries_.reserve(observations); }
+  /// Allocates memory for so many observations of a part.
+  void reserve(std::size_t part, std::size_t observations) {
+    parts_[part].entries.reserve(observations);
+  }
 
   /// The observations of one event run. A point's four pixels are a square, the first its upper left
-  /// corner; it may lie across the seam of an image that wraps.
-  void add_run(std::span<const GridObservation> observations);
+  /// corner; it may lie across the seam of an image that wraps. One thread for each part.
+  void add_run(std::size_t part, std::span<const GridObservation> observations);
 
   /// Adds w (I(j) - I(i))^2 of two neighbours.
   void add_smoothness_term(int i, int j, float weight);
@@ -64,22 +76,39 @@ class IntensitySystem {
 
   /// The term of an observation in the mean row of its run.
   struct Entry {
-    int index;  ///< of the upper left pixel
-    std::array<float, 4> factor;
+    int index;                           ///< of the upper left pixel
+    std::array<std::uint16_t, 4> steps;  ///< factors in units of the run: less to read than floats
   };
   struct Run {
-    std::size_t begin, end;  ///< of its entries
+    std::uint32_t entries;
     float weight;
+    float unit;  ///< of its entries' steps
+  };
+  struct Part {
+    std::vector<Lanes>
+        cells;  ///< terms of the observations, by the upper left pixel of their square
+    std::vector<Entry> entries;  ///< of one run after the other
+    std::vector<Run> runs;
+    /// Upper left pixels of the entries, [first, end).
+    std::size_t first = 0, end = 0;
+    std::vector<Stiffness> stiffness;  ///< of the coarse grid's cells
   };
 
   /// rows_ with the terms of the observations, one neighbour after the other.
   using Stencil = std::array<std::vector<float>, kNeighbours>;
+  /// Sums of every part by the upper left pixel of the squares of its entries.
+  using PartSums = std::vector<std::vector<Corners>>;
 
   [[nodiscard]] Stencil stencil(std::vector<float>& right_side) const;
-  void multiply(const Stencil& stencil, const std::vector<float>& x, std::vector<float>& y) const;
-  void multiply_unrolled(const Stencil& stencil, const std::vector<float>& x,
-                         std::vector<float>& y) const;
-  [[nodiscard]] double run_variance() const;
+  void multiply(const Stencil& stencil, const std::vector<float>& x, std::vector<float>& y,
+                PartSums& sums) const;
+  void multiply_unrolled(const Stencil& stencil, const std::vector<float>& x, std::vector<float>& y,
+                         PartSums& sums) const;
+  /// sum_r n_r m_r (m_r . x) of a part.
+  void multiply_runs(const Part& part, const std::vector<float>& x,
+                     std::vector<Corners>& sums) const;
+  /// That of all parts and of the smoothness.
+  [[nodiscard]] std::vector<Stiffness> stiffness() const;
 
   [[nodiscard]] bool wraps() const { return columns_ > width_; }
   /// Index of a pixel in the unrolled image.
@@ -91,10 +120,10 @@ class IntensitySystem {
   int width_, height_;
   int columns_;  ///< of the unrolled image; the members below are of it
   std::vector<std::array<float, kNeighbours>> rows_;
-  std::vector<Lanes>
-      cells_;  ///< terms of the observations, by the upper left pixel of their square
-  std::vector<Entry> entries_;
-  std::vector<Run> runs_;
+  CoarseGrid coarse_;
+  std::vector<std::uint32_t> coarse_cell_;  ///< of every pixel of the unrolled image
+  std::vector<Stiffness> smoothness_;       ///< of the coarse grid's cells
+  std::vector<Part> parts_;
 };
 
 }  // namespace saccade

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
+#include "core/process/parallel.h"
 #include "core/stopwatch.h"
 
 namespace saccade {
@@ -68,27 +70,6 @@ void describe(config::Fields& fields, ObservationOptions& options, bool has_surf
       .range(0, 20);
 }
 
-double ObservationSource::observe_all(
-    std::span<const Event> events, const Trajectory& world_from_camera,
-    const std::function<void(std::span<const IntensityObservation>, double)>& use) {
-  double seconds = 0;
-  {
-    const ScopedTimer clock(seconds);
-    plan(events);
-  }
-  std::vector<IntensityObservation> part;
-  for (std::size_t begin = 0; begin < events.size(); begin += kBatch) {
-    part.clear();
-    const std::size_t count = std::min(kBatch, events.size() - begin);
-    {
-      const ScopedTimer clock(seconds);
-      observe(events.subspan(begin, count), world_from_camera, part);
-    }
-    use(part, static_cast<double>(begin + count) / static_cast<double>(events.size()));
-  }
-  return seconds;
-}
-
 template <class Path>
 ReprojectedObservations<Path>::ReprojectedObservations(Path path, const PinholeCamera& camera,
                                                        const ContrastThresholds& thresholds,
@@ -100,6 +81,7 @@ ReprojectedObservations<Path>::ReprojectedObservations(Path path, const PinholeC
       changes_(thresholds, 1e-6 * options.blind_time_us.value_or(0), options.remove_bias),
       options_(options),
       pixels_(camera.width, camera.height),
+      starts_(camera.width, camera.height),
       strides_((camera.width - 1) / kTile_px + 1, (camera.height - 1) / kTile_px + 1,
                options.no_event_stride) {
   // At an occluding contour the log intensity jumps past the threshold by up to one more of them, and
@@ -118,13 +100,19 @@ ReprojectedObservations<Path>::ReprojectedObservations(Path path, const PinholeC
 }
 
 template <class Path>
-void ReprojectedObservations<Path>::plan(std::span<const Event> events) {
+void ReprojectedObservations<Path>::plan(std::span<const Event> events, std::size_t bands) {
   changes_.weigh(events, {pixels_.width(), pixels_.height()});
   // The log intensity goes on beyond the last events of leaking pixels as often up as down, though more of these are ON.
   // Before a first event it is expected at the reference as ever: expected at the start of it, no image was better.
   const float polarity = changes_.bias().last_polarity;
   kinds_[kNoEventAfterOn].expected = expected_ * (1 - polarity);
   kinds_[kNoEventAfterOff].expected = -expected_ * (1 + polarity);
+  thin_constraints(events);
+  divide(events, bands);
+}
+
+template <class Path>
+void ReprojectedObservations<Path>::thin_constraints(std::span<const Event> events) {
   Image<int> counts(strides_.width(), strides_.height());
   for (const Event& event : events) ++counts(event.x / kTile_px, event.y / kTile_px);
   for (std::size_t i = 0; i < counts.size(); ++i) {
@@ -133,45 +121,161 @@ void ReprojectedObservations<Path>::plan(std::span<const Event> events) {
   }
 }
 
+/// The pixels of a row take about as long as its events on average.
 template <class Path>
-void ReprojectedObservations<Path>::observe(std::span<const Event> events,
-                                            const Trajectory& world_from_camera,
-                                            std::vector<IntensityObservation>& observations) {
-  if (events.empty()) return;
-  if (constrained_ == 0) {
-    path_.start(world_from_camera, events.front().t_ns);
-    if (options_.first_event_sigma > 0) note_starts();
-    add_no_event_constraints(observations);
+void ReprojectedObservations<Path>::divide(std::span<const Event> events, std::size_t bands) {
+  const int height = pixels_.height();
+  const auto rows = static_cast<std::size_t>(height);
+  std::vector<std::size_t> work(rows, std::max<std::size_t>(events.size() / rows, 1));
+  for (const Event& event : events) ++work[event.y];
+  const std::size_t all = std::accumulate(work.begin(), work.end(), std::size_t{0});
+  bands_.assign(bands, {});
+  band_of_row_.resize(rows);
+  std::size_t before = 0;
+  for (std::size_t row = 0; row < rows; before += work[row++])
+    band_of_row_[row] = std::min(before * bands / all, bands - 1);
+  for (std::size_t band = 0; band < bands; ++band) {
+    const auto [begin, end] = std::equal_range(band_of_row_.begin(), band_of_row_.end(), band);
+    bands_[band].rows = {static_cast<int>(begin - band_of_row_.begin()),
+                         static_cast<int>(end - band_of_row_.begin())};
   }
-  const TimeNs last_ns = events.back().t_ns;
-  for (std::size_t i = 0; i < events.size();) {
-    path_.advance(world_from_camera, last_ns);
-    for (; i < events.size() && events[i].t_ns <= path_.end_ns(); ++i) {
-      Pixel& pixel = pixels_(events[i].x, events[i].y);
-      pixel.last_change = changes_.next(events[i], pixel.level);
-      pixel.log_intensity += pixel.last_change;  // (2.8)
-      if (const auto reprojection = path_.of(events[i]))
-        add_event(events[i], *reprojection, observations);
+}
+
+/// The steps of the next part are found beside the bands of this one: the surfaces are rendered one after the other.
+template <class Path>
+double ReprojectedObservations<Path>::observe(std::span<const Event> events,
+                                              const Trajectory& world_from_camera,
+                                              std::size_t bands, const ObservationSink& use,
+                                              const std::function<void(double)>& done) {
+  const auto part_from = [&](std::size_t begin) {
+    return begin < events.size() ? events.subspan(begin, std::min(kBatch, events.size() - begin))
+                                 : std::span<const Event>();
+  };
+  double seconds = 0;
+  std::vector<Step> steps;
+  {
+    const ScopedTimer clock(seconds);
+    plan(events, bands);
+    steps = steps_over(part_from(0), world_from_camera);
+  }
+  for (std::size_t end = 0; end < events.size();) {
+    {
+      const ScopedTimer clock(seconds);
+      const std::span<const Event> part = part_from(end);
+      end += part.size();
+      for (Band& band : bands_) band.events.clear();
+      for (const Event& event : part) bands_[band_of_row_[event.y]].events.push_back(event);
+      std::vector<Step> next;
+      parallel_for(bands_.size() + 1, [&](std::size_t i) {
+        if (i == 0) {
+          next = steps_over(part_from(end), world_from_camera);
+        } else {
+          observe_band(steps, bands_[i - 1]);
+          use(i - 1, bands_[i - 1].observations);
+        }
+      });
+      steps = std::move(next);
     }
-    if (options_.no_event_constraints &&
-        path_.moved_px(constrained_from_reference_) >= 0.9 * options_.no_event_spacing_px)
-      add_no_event_constraints(observations);
+    done(static_cast<double>(end) / static_cast<double>(events.size()));
+  }
+  return seconds;
+}
+
+template <class Path>
+auto ReprojectedObservations<Path>::steps_over(std::span<const Event> events,
+                                               const Trajectory& world_from_camera)
+    -> std::vector<Step> {
+  std::vector<Step> steps;
+  if (events.empty()) return steps;
+  if (!newest_) steps.push_back(first_step(world_from_camera, events.front().t_ns));
+  const TimeNs last_ns = events.back().t_ns;
+  do {
+    Step step;
+    step.begin = *newest_;
+    step.end = path_.next(step.begin, world_from_camera, last_ns);
+    newest_ = step.end;
+    if (options_.no_event_constraints) time_constraints(step);
+    steps.push_back(std::move(step));
+  } while (newest_->t_ns < last_ns);
+  return steps;
+}
+
+template <class Path>
+auto ReprojectedObservations<Path>::first_step(const Trajectory& world_from_camera, TimeNs t_ns)
+    -> Step {
+  Step step;
+  step.end = path_.first(world_from_camera, t_ns);
+  step.is_first = true;
+  if (options_.no_event_constraints) step.constraints.push_back({t_ns, 0, constrained_++});
+  newest_ = step.end;
+  constrained_from_reference_ = inverse_of(step.end.pose());
+  return step;
+}
+
+/// The image moves nearly evenly from one instant to the next.
+template <class Path>
+void ReprojectedObservations<Path>::time_constraints(Step& step) {
+  const auto add = [&](double fraction) {
+    const TimeNs interval_ns = step.end.t_ns - step.begin.t_ns;
+    step.constraints.push_back(
+        {step.begin.t_ns + static_cast<TimeNs>(fraction * static_cast<double>(interval_ns)),
+         static_cast<float>(fraction), constrained_++});
+    constrained_from_reference_ =
+        inverse_of(between(step.begin.pose(), step.end.pose(), static_cast<float>(fraction)));
+  };
+  const double spacing_px = options_.no_event_spacing_px;
+  const double before_px = path_.moved_px(step.begin, constrained_from_reference_);
+  const double after_px = path_.moved_px(step.end, constrained_from_reference_);
+  if (after_px < spacing_px) return;
+  const double step_px = path_.moved_px(step.end, inverse_of(step.begin.pose()));
+  if (!std::isfinite(after_px) || !(step_px > 0)) {
+    add(1);
+    return;
+  }
+  const double first = (spacing_px - before_px) / (after_px - before_px);
+  for (double fraction = std::max(first, 0.0); fraction <= 1; fraction += spacing_px / step_px)
+    add(fraction);
+}
+
+template <class Path>
+void ReprojectedObservations<Path>::observe_band(std::span<const Step> steps, Band& band) {
+  band.observations.clear();
+  auto event = band.events.begin();
+  for (const Step& step : steps) {
+    path_.follow(step.end, band.rows);
+    if (step.is_first && options_.first_event_sigma > 0) note_starts(step.end, band.rows);
+    for (const ConstraintTime& time : step.constraints) {
+      for (; !step.is_first && event != band.events.end() && event->t_ns <= time.t_ns; ++event)
+        observe_event(*event, step, band);
+      add_no_event_constraints(time, step, band);
+    }
+    for (; !step.is_first && event != band.events.end() && event->t_ns <= step.end.t_ns; ++event)
+      observe_event(*event, step, band);
   }
 }
 
 template <class Path>
-void ReprojectedObservations<Path>::note_starts() {
-  for (int y = 0; y < pixels_.height(); ++y)
+void ReprojectedObservations<Path>::observe_event(const Event& event, const Step& step,
+                                                  Band& band) {
+  Pixel& pixel = pixels_(event.x, event.y);
+  pixel.last_change = changes_.next(event, pixel.level);
+  pixel.log_intensity += pixel.last_change;  // (2.8)
+  if (const auto reprojection = path_.of(event, step.begin, step.end))
+    add_event(event, *reprojection, band);
+}
+
+template <class Path>
+void ReprojectedObservations<Path>::note_starts(const Instant& instant, PixelRows rows) {
+  for (int y = rows.begin; y < rows.end; ++y)
     for (int x = 0; x < pixels_.width(); ++x)
-      if (const auto reprojection = path_.at_end(x, y)) {
-        pixels_(x, y).start_x = reprojection->x;
-        pixels_(x, y).start_y = reprojection->y;
-      }
+      if (const auto reprojection = path_.at(x, y, instant))
+        starts_(x, y) = {reprojection->x, reprojection->y};
 }
 
 template <class Path>
 void ReprojectedObservations<Path>::add_event(const Event& event, const Reprojection& reprojection,
-                                              std::vector<IntensityObservation>& observations) {
+                                              Band& band) {
+  std::vector<IntensityObservation>& observations = band.observations;
   Pixel& pixel = pixels_(event.x, event.y);
   const auto tolerance = static_cast<float>(kSameSurfaceRatio);
   const bool is_on = event.polarity > 0;
@@ -181,15 +285,16 @@ void ReprojectedObservations<Path>::add_event(const Event& event, const Reprojec
                            event.t_ns - pixel.t_ns < kSimultaneousNs);
   if (pixel.events == 0 || pixel.events >= options_.run_events) {
     const bool has_earlier_run = pixel.events > 0;
-    pixel.run = runs_++;
+    pixel.run = band.runs++;
     if (has_earlier_run)
       observations.push_back({pixel.x, pixel.y, pixel.log_intensity - pixel.last_change,
                               IntensityObservation::tag(pixel.run, kEvent)});
     pixel.events = 0;
   }
-  if (pixel.last_polarity == 0 && pixel.start_x != kNowhere)
-    observations.push_back({pixel.start_x, pixel.start_y, changes_.bias().start,
-                            IntensityObservation::tag(pixel.run, kStart)});
+  if (const Start start = pixel.last_polarity == 0 ? starts_(event.x, event.y) : Start();
+      start.x != kNowhere)
+    observations.push_back(
+        {start.x, start.y, changes_.bias().start, IntensityObservation::tag(pixel.run, kStart)});
   const Kind kind = !is_jump ? kEvent : is_on ? kJumpOn : kJumpOff;
   observations.push_back({reprojection.x, reprojection.y, pixel.log_intensity,
                           IntensityObservation::tag(pixel.run, kind)});
@@ -202,33 +307,34 @@ void ReprojectedObservations<Path>::add_event(const Event& event, const Reprojec
 }
 
 template <class Path>
-void ReprojectedObservations<Path>::add_no_event_constraints(
-    std::vector<IntensityObservation>& observations) {
-  constrained_from_reference_ = inverse_of(path_.end_pose());
+void ReprojectedObservations<Path>::add_no_event_constraints(const ConstraintTime& time,
+                                                             const Step& step, Band& band) {
   // Neighbours in both directions alternate, so that the view is covered evenly.
   const int width = pixels_.width();
-  for (int y = 0; y < pixels_.height() && options_.no_event_constraints; ++y)
+  for (int y = band.rows.begin; y < band.rows.end; ++y)
     for (int left = 0; left < width; left += kTile_px) {
       const int stride = strides_(left / kTile_px, y / kTile_px);
       const int right = std::min(left + kTile_px, width);
-      const int shift = (constrained_ + (stride / 2) * y - left) % stride;
-      for (int x = left + (shift < 0 ? shift + stride : shift); x < right; x += stride)
-        add_no_event_constraint(x, y, observations);
+      const int shift = (time.number + (stride / 2) * y - left) % stride;
+      for (int x = left + (shift < 0 ? shift + stride : shift); x < right; x += stride) {
+        const auto reprojection = step.is_first
+                                      ? path_.at(x, y, step.end)
+                                      : path_.between(x, y, step.begin, step.end, time.fraction);
+        if (reprojection) add_no_event_constraint(x, y, *reprojection, band);
+      }
     }
-  ++constrained_;
 }
 
 template <class Path>
-void ReprojectedObservations<Path>::add_no_event_constraint(
-    int x, int y, std::vector<IntensityObservation>& observations) {
-  const auto reprojection = path_.at_end(x, y);
-  if (!reprojection) return;
+void ReprojectedObservations<Path>::add_no_event_constraint(int x, int y,
+                                                            const Reprojection& reprojection,
+                                                            Band& band) {
   Pixel& pixel = pixels_(x, y);
   if (pixel.events == 0) {
-    pixel.run = runs_++;
+    pixel.run = band.runs++;
     pixel.events = 1;
-  } else if (const float moved_x = reprojection->x - pixel.observed_x,
-             moved_y = reprojection->y - pixel.observed_y;
+  } else if (const float moved_x = reprojection.x - pixel.observed_x,
+             moved_y = reprojection.y - pixel.observed_y;
              static_cast<double>(moved_x * moved_x + moved_y * moved_y) <
              kMinSquaredMotionRatio * options_.no_event_spacing_px * options_.no_event_spacing_px) {
     return;
@@ -236,10 +342,10 @@ void ReprojectedObservations<Path>::add_no_event_constraint(
   const Kind kind = pixel.last_polarity > 0   ? kNoEventAfterOn
                     : pixel.last_polarity < 0 ? kNoEventAfterOff
                                               : kNoEvent;
-  observations.push_back({reprojection->x, reprojection->y, pixel.log_intensity,
-                          IntensityObservation::tag(pixel.run, kind)});
-  pixel.observed_x = reprojection->x;
-  pixel.observed_y = reprojection->y;
+  band.observations.push_back({reprojection.x, reprojection.y, pixel.log_intensity,
+                               IntensityObservation::tag(pixel.run, kind)});
+  pixel.observed_x = reprojection.x;
+  pixel.observed_y = reprojection.y;
 }
 
 template class ReprojectedObservations<SurfaceReprojection>;

@@ -72,6 +72,11 @@ struct ObservationOptions {
 /// `has_surfaces`: the observations are of a view with depth, not of a panorama.
 void describe(config::Fields& fields, ObservationOptions& options, bool has_surfaces);
 
+/// Receives the observations of a band of the sensor's rows: a part of them, in order of time. Their runs are
+/// those of the band, which count from 0. Several threads call it, each for bands of its own.
+using ObservationSink =
+    std::function<void(std::size_t band, std::span<const IntensityObservation>)>;
+
 /// Turns events into observations of the reference view. At the instant of an event the log intensity
 /// is exact but for the pixel's offset: the sum of all p C of the pixel so far (2.8), and of what it missed
 /// while it was blind (level_changes.h).
@@ -81,24 +86,19 @@ class ObservationSource {
 
   [[nodiscard]] virtual std::span<const ObservationKind> kinds() const = 0;
 
-  /// Thins no-event constraints where many of `events` lie (dense_events_per_px), weighs what pixels miss
-  /// while they are blind and finds the bias of their changes, which changes kinds(). Before observe().
-  virtual void plan(std::span<const Event> events) = 0;
-
-  /// Appends the observations of `events` (in order of time, and not before those of an earlier
-  /// call).
-  virtual void observe(std::span<const Event> events, const Trajectory& world_from_camera,
-                       std::vector<IntensityObservation>& observations) = 0;
-
-  /// The observations of all events, passed to `use` part by part with the fraction of the events
-  /// up to the end of the part. Returns the seconds it took without `use`.
-  double observe_all(
-      std::span<const Event> events, const Trajectory& world_from_camera,
-      const std::function<void(std::span<const IntensityObservation>, double fraction)>& use);
+  /// The observations of all events of a window, which are in order of time, part by part. The sensor is divided into
+  /// `bands` of rows with about as much work each; the bands of a part are observed in parallel. After each part calls
+  /// `done` with the fraction of the events up to its end. Returns the seconds it took with `use`, without
+  /// `done`. Before the first observation it thins no-event constraints where many events lie
+  /// (dense_events_per_px), weighs what pixels miss while they are blind, and finds the bias of their changes, which
+  /// changes kinds(). Once for each source.
+  virtual double observe(std::span<const Event> events, const Trajectory& world_from_camera,
+                         std::size_t bands, const ObservationSink& use,
+                         const std::function<void(double fraction)>& done) = 0;
 };
 
 /// `Path`, SurfaceReprojection or PanoramaReprojection, gives the reprojections of the pixels over
-/// time.
+/// time. Its instants are found first, for the whole sensor; then each band of rows goes through them by itself.
 template <class Path>
 class ReprojectedObservations : public ObservationSource {
  public:
@@ -106,9 +106,9 @@ class ReprojectedObservations : public ObservationSource {
                           const ContrastThresholds& thresholds, const ObservationOptions& options);
 
   [[nodiscard]] std::span<const ObservationKind> kinds() const override { return kinds_; }
-  void plan(std::span<const Event> events) override;
-  void observe(std::span<const Event> events, const Trajectory& world_from_camera,
-               std::vector<IntensityObservation>& observations) override;
+  double observe(std::span<const Event> events, const Trajectory& world_from_camera,
+                 std::size_t bands, const ObservationSink& use,
+                 const std::function<void(double fraction)>& done) override;
 
  private:
   /// Indices of kinds_.
@@ -125,25 +125,59 @@ class ReprojectedObservations : public ObservationSource {
 
   static constexpr float kNowhere = -1;
 
-  struct Pixel {
-    float log_intensity = 0;  ///< sum of the changes up to its last event
-    float last_change = 0;    ///< from the event before that
+  /// One line of the cache: the pixels of events and of constraints are far from each other.
+  struct alignas(64) Pixel {
     LevelChanges::Pixel level;
+    TimeNs t_ns = 0;                       ///< of the last event
+    float log_intensity = 0;               ///< sum of the changes up to its last event
+    float last_change = 0;                 ///< from the event before that
     float inverse_depth = 0;               ///< of the last reprojection; 0: none so far
     float x = 0, y = 0;                    ///< reprojection at its last event
     float observed_x = 0, observed_y = 0;  ///< reprojection at its last observation
-    TimeNs t_ns = 0;                       ///< of the last event
     std::uint32_t run = 0;
-    int events = 0;                                ///< of its run
-    int last_polarity = 0;                         ///< of the last event, 0: none so far
-    float start_x = kNowhere, start_y = kNowhere;  ///< reprojection before all events
+    std::int32_t events = 0;         ///< of its run
+    std::int32_t last_polarity = 0;  ///< of the last event, 0: none so far
+  };
+  /// The reprojection of a pixel before all events.
+  struct Start {
+    float x = kNowhere, y = kNowhere;
   };
 
-  void note_starts();
-  void add_event(const Event& event, const Reprojection& reprojection,
-                 std::vector<IntensityObservation>& observations);
-  void add_no_event_constraints(std::vector<IntensityObservation>& observations);
-  void add_no_event_constraint(int x, int y, std::vector<IntensityObservation>& observations);
+  using Instant = typename Path::Instant;
+
+  /// When no-event constraints are added.
+  struct ConstraintTime {
+    TimeNs t_ns;
+    float fraction;  ///< of the way from one instant to the next
+    int number;      ///< how many times they were added before
+  };
+  /// From one instant to the next.
+  struct Step {
+    Instant begin, end;
+    bool is_first = false;  ///< there is only `end`
+    std::vector<ConstraintTime> constraints;
+  };
+  /// What is known of some rows, with the events of one part.
+  struct Band {
+    PixelRows rows;
+    std::uint32_t runs = 0;
+    Events events;
+    std::vector<IntensityObservation> observations;
+  };
+
+  void plan(std::span<const Event> events, std::size_t bands);
+  void thin_constraints(std::span<const Event> events);
+  void divide(std::span<const Event> events, std::size_t bands);
+  [[nodiscard]] std::vector<Step> steps_over(std::span<const Event> events,
+                                             const Trajectory& world_from_camera);
+  [[nodiscard]] Step first_step(const Trajectory& world_from_camera, TimeNs t_ns);
+  void time_constraints(Step& step);
+  void observe_band(std::span<const Step> steps, Band& band);
+  void note_starts(const Instant& instant, PixelRows rows);
+  void observe_event(const Event& event, const Step& step, Band& band);
+  void add_event(const Event& event, const Reprojection& reprojection, Band& band);
+  void add_no_event_constraints(const ConstraintTime& time, const Step& step, Band& band);
+  void add_no_event_constraint(int x, int y, const Reprojection& reprojection, Band& band);
 
   Path path_;
   float contrast_on_, contrast_off_;
@@ -152,10 +186,13 @@ class ReprojectedObservations : public ObservationSource {
   ObservationOptions options_;
   std::array<ObservationKind, kKinds> kinds_;
   Image<Pixel> pixels_;
+  Image<Start> starts_;
+  std::vector<Band> bands_;
+  std::vector<std::size_t> band_of_row_;
   Image<int> strides_;                     ///< of no-event constraints, by tile of the sensor
+  std::optional<Instant> newest_;          ///< nullopt before the first step
   CameraPose constrained_from_reference_;  ///< the camera when constraints were added last
   int constrained_ = 0;                    ///< number of times they were
-  std::uint32_t runs_ = 0;
 };
 
 /// Observations of a view whose depth is known.
@@ -165,10 +202,9 @@ class SurfaceObservations : public ReprojectedObservations<SurfaceReprojection> 
   SurfaceObservations(const PinholeCamera& camera, const DepthScene& scene,
                       const Rigid3& world_from_reference, const ImageF& reference_inverse_depth,
                       const ContrastThresholds& thresholds, const ObservationOptions& options)
-      : ReprojectedObservations(
-            SurfaceReprojection(camera, scene, world_from_reference, reference_inverse_depth,
-                                options.reprojection, options.no_event_spacing_px),
-            camera, thresholds, options) {}
+      : ReprojectedObservations(SurfaceReprojection(camera, scene, world_from_reference,
+                                                    reference_inverse_depth, options.reprojection),
+                                camera, thresholds, options) {}
 };
 
 /// Observations of a panorama, whose world is the reference view.

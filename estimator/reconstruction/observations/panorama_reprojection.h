@@ -18,38 +18,49 @@ class PanoramaReprojection {
  public:
   PanoramaReprojection(const PinholeCamera& camera, const Panorama& panorama);
 
-  void start(const Trajectory& world_from_camera, TimeNs t_ns);
-  /// To the next instant, at most `last_ns`.
-  void advance(const Trajectory& world_from_camera, TimeNs last_ns);
-
-  /// Time and pose of the last instant.
-  [[nodiscard]] TimeNs end_ns() const { return end_.t_ns; }
-  [[nodiscard]] const CameraPose& end_pose() const { return end_.world_from_camera; }
-
-  /// Of an event between the last two instants.
-  [[nodiscard]] std::optional<Reprojection> of(const Event& event);
-  /// Of a pixel at the last instant.
-  [[nodiscard]] std::optional<Reprojection> at_end(int x, int y) {
-    return follow(x, y, end_.world_from_camera);
-  }
-  /// Image motion from an earlier pose to the last instant, as an angle in pixels of the panorama.
-  [[nodiscard]] double moved_px(const CameraPose& earlier_from_world) const {
-    return projector_.moved_px(end_.world_from_camera, earlier_from_world);
-  }
-
- private:
   struct Instant {
     TimeNs t_ns = 0;
     CameraPose world_from_camera;
+
+    [[nodiscard]] const CameraPose& pose() const { return world_from_camera; }
   };
 
+  [[nodiscard]] Instant first(const Trajectory& world_from_camera, TimeNs t_ns) const {
+    return {t_ns, pose_at(world_from_camera, Rigid3(), t_ns)};
+  }
+  /// The one after another, at most `last_ns`.
+  [[nodiscard]] Instant next(const Instant& from, const Trajectory& world_from_camera,
+                             TimeNs last_ns) const;
+
+  /// Nothing to do: a direction follows from the pose alone.
+  void follow(const Instant& instant, PixelRows rows) {
+    static_cast<void>(instant);
+    static_cast<void>(rows);
+  }
+
+  /// Of an event between two instants. One thread per pixel.
+  [[nodiscard]] std::optional<Reprojection> of(const Event& event, const Instant& begin,
+                                               const Instant& end);
+  /// Of a pixel between them. One thread per pixel.
+  [[nodiscard]] std::optional<Reprojection> between(int x, int y, const Instant& begin,
+                                                    const Instant& end, float fraction);
+  /// Of a pixel at an instant. One thread per pixel.
+  [[nodiscard]] std::optional<Reprojection> at(int x, int y, const Instant& instant) {
+    return continued(x, y, instant.world_from_camera);
+  }
+  /// Image motion from an earlier pose to an instant, as an angle in pixels of the panorama.
+  [[nodiscard]] double moved_px(const Instant& instant,
+                                const CameraPose& earlier_from_world) const {
+    return projector_.moved_px(instant.world_from_camera, earlier_from_world);
+  }
+
+ private:
   /// Continuing the path of the pixel's last reprojection.
-  [[nodiscard]] std::optional<Reprojection> follow(int x, int y,
-                                                   const CameraPose& world_from_camera);
+  [[nodiscard]] std::optional<Reprojection> continued(int x, int y,
+                                                      const CameraPose& world_from_camera);
 
   PanoramaProjector projector_;
-  ImageF columns_;       ///< of the last reprojections
-  Instant begin_, end_;  ///< around the current events
+  ImageF columns_;  ///< of the last reprojections
 };
 
 }  // namespace saccade

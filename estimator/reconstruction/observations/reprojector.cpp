@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <utility>
 
 #include "core/check.h"
 
@@ -11,7 +12,7 @@ namespace {
 
 constexpr float kDiscontinuityRatio = 1.1F;  ///< ratio of depths of neighbours on two surfaces
 constexpr int kSearchStride =
-    3;  ///< calls in which pixels without a reprojection are searched once
+    2;  ///< calls in which pixels without a reprojection are searched once
 constexpr std::size_t kChunk = 128;       ///< pixels per vectorised block
 constexpr double kLargestMargin_px = 64;  ///< of the rendered view
 
@@ -78,7 +79,6 @@ Reprojector::Reprojector(const PinholeCamera& camera, const DepthScene& scene,
   view_camera_.height += 2 * margin;
   view_camera_.cx += margin;
   view_camera_.cy += margin;
-  inverse_depth_ = ImageF(view_camera_.width, view_camera_.height);
   const UndistortionTable undistorted(camera);
   for (int y = 0; y < camera.height; ++y)
     for (int x = 0; x < camera.width; ++x) {
@@ -119,52 +119,57 @@ void Reprojector::set_planes(const ImageF& inverse_depth) {
     }
 }
 
-void Reprojector::prepare(const CameraPose& reference_from_camera) {
-  if (draws_ > 0 &&
-      moved_px(reference_from_camera, view_from_reference_) < options_.redraw_motion_px &&
+const std::shared_ptr<const RenderedSurfaces>& Reprojector::prepare(
+    const CameraPose& reference_from_camera) {
+  if (surfaces_ &&
+      moved_px(reference_from_camera, surfaces_->camera_from_reference) <
+          options_.redraw_motion_px &&
       parallax_px(reference_from_camera) < options_.redraw_parallax_px)
-    return;
+    return surfaces_;
+  auto surfaces = std::make_shared<RenderedSurfaces>();
+  surfaces->inverse_depth = ImageF(view_camera_.width, view_camera_.height);
   const Rigid3 reference_from_view = rigid_of(reference_from_camera);
   scene_.draw((world_from_reference_ * reference_from_view).inverse(), view_camera_,
-              inverse_depth_);
-  view_from_reference_ = inverse_of(reference_from_camera);
-  mark_discontinuities();
+              surfaces->inverse_depth);
+  surfaces->camera_from_reference = inverse_of(reference_from_camera);
+  mark_discontinuities(*surfaces);
   ++draws_;
+  surfaces_ = std::move(surfaces);
+  return surfaces_;
 }
 
-void Reprojector::mark_discontinuities() {
+void Reprojector::mark_discontinuities(RenderedSurfaces& surfaces) const {
   constexpr std::size_t kMost = 64;
   const int radius = std::max(options_.discontinuity_margin_px, 1);
-  const ImageF high = extreme_within(inverse_depth_, radius, 1);
-  ImageF known = inverse_depth_;
+  const ImageF high = extreme_within(surfaces.inverse_depth, radius, 1);
+  ImageF known = surfaces.inverse_depth;
   for (float& value : known.pixels())
     if (!(value > 0)) value = std::numeric_limits<float>::infinity();
   const ImageF low = extreme_within(known, radius, -1);
-  open_inverse_depth_ = inverse_depth_;
+  surfaces.open_inverse_depth = surfaces.inverse_depth;
   std::vector<std::size_t> at;
   for (std::size_t i = 0; i < high.size(); ++i) {
     const bool is_step = high.pixels()[i] > kDiscontinuityRatio * low.pixels()[i];
     if (!is_step) continue;
-    if (options_.discontinuity_margin_px > 0) open_inverse_depth_.pixels()[i] = 0;
+    if (options_.discontinuity_margin_px > 0) surfaces.open_inverse_depth.pixels()[i] = 0;
     at.push_back(i);
   }
-  discontinuities_.clear();
   for (std::size_t k = 0; k < at.size(); k += at.size() / kMost + 1) {
     const auto i = static_cast<int>(at[k]);
     const Eigen::Vector2d pixel(i % view_camera_.width, i / view_camera_.width);
-    discontinuities_.push_back(
+    surfaces.discontinuities.push_back(
         {view_camera_.ray(pixel).cast<float>(), 1 / high.pixels()[at[k]], 1 / low.pixels()[at[k]]});
   }
 }
 
 double Reprojector::parallax_px(const CameraPose& reference_from_camera) const {
   const CameraPose camera_from_reference = inverse_of(reference_from_camera);
-  const CameraPose reference_from_view = inverse_of(view_from_reference_);
+  const CameraPose reference_from_view = inverse_of(surfaces_->camera_from_reference);
   const Eigen::Matrix3f r = camera_from_reference.r * reference_from_view.r;
   const Eigen::Vector3f t =
       camera_from_reference.r * reference_from_view.t + camera_from_reference.t;
   float furthest = 0;
-  for (const Discontinuity& d : discontinuities_) {
+  for (const RenderedSurfaces::Discontinuity& d : surfaces_->discontinuities) {
     const Eigen::Vector3f ray = r * d.ray;
     const Eigen::Vector3f near = d.near * ray + t, far = d.far * ray + t;
     if (!(near.z() > 0 && far.z() > 0)) return std::numeric_limits<double>::infinity();
@@ -180,7 +185,7 @@ std::vector<Eigen::Vector3f> Reprojector::samples(const CameraPose& reference_fr
   std::vector<Eigen::Vector3f> points;
   for (int y = kEvery / 2; y < camera_.height; y += kEvery)
     for (int x = kEvery / 2; x < camera_.width; x += kEvery) {
-      const float known = inverse_depth_(x + margin, y + margin);
+      const float known = surfaces_->inverse_depth(x + margin, y + margin);
       const float z = known > 0 ? 1 / known : scene_.typical_depth_m;
       const Eigen::Vector3f ray = camera_.ray({x, y}).cast<float>();
       points.emplace_back(reference_from_camera.r * (z * ray) + reference_from_camera.t);
@@ -217,29 +222,32 @@ ImagePath Reprojector::motion(const CameraPose& reference_from_first,
   return {static_cast<double>(length), static_cast<double>(bend)};
 }
 
-void Reprojector::follow(const CameraPose& reference_from_camera, const ReprojectionField& earlier,
-                         ReprojectionField& reprojections) {
-  const std::size_t count = planes_.size();
-  for (std::size_t i = 0; i < count; i += kChunk)
-    follow_chunk(i, std::min(kChunk, count - i), reference_from_camera, earlier, reprojections);
-  std::size_t i = 0;
-  for (int y = 0; y < camera_.height; ++y)
+void Reprojector::follow(PixelRows rows, int pass, const RenderedSurfaces& surfaces,
+                         const CameraPose& reference_from_camera, const ReprojectionField& earlier,
+                         ReprojectionField& reprojections) const {
+  const auto width = static_cast<std::size_t>(camera_.width);
+  const std::size_t end = static_cast<std::size_t>(rows.end) * width;
+  std::size_t i = static_cast<std::size_t>(rows.begin) * width;
+  for (std::size_t k = i; k < end; k += kChunk)
+    follow_chunk(k, std::min(kChunk, end - k), surfaces, reference_from_camera, earlier,
+                 reprojections);
+  for (int y = rows.begin; y < rows.end; ++y)
     for (int x = 0; x < camera_.width; ++x, ++i) {
       if (reprojections.inverse_depth[i] > 0) continue;
       const bool is_lost = earlier.inverse_depth[i] > 0;
-      if (!is_lost && follow_passes_ > 0 && (x + 3 * y + follow_passes_) % kSearchStride != 0)
-        continue;
+      if (!is_lost && pass > 0 && (x + 3 * y + pass) % kSearchStride != 0) continue;
       const Eigen::Vector2f from(earlier.x[i], earlier.y[i]);
-      const auto reprojection = find(x, y, reference_from_camera, is_lost ? &from : nullptr);
+      const auto reprojection =
+          find(x, y, surfaces, reference_from_camera, is_lost ? &from : nullptr);
       if (!reprojection) continue;
       reprojections.x[i] = reprojection->x;
       reprojections.y[i] = reprojection->y;
       reprojections.inverse_depth[i] = reprojection->inverse_depth;
     }
-  ++follow_passes_;
 }
 
 void Reprojector::follow_chunk(std::size_t first, std::size_t count,
+                               const RenderedSurfaces& surfaces,
                                const CameraPose& reference_from_camera,
                                const ReprojectionField& earlier,
                                ReprojectionField& reprojections) const {
@@ -248,8 +256,8 @@ void Reprojector::follow_chunk(std::size_t first, std::size_t count,
   // vectorised.
   const Eigen::Matrix3f& r = reference_from_camera.r;
   const Eigen::Vector3f& t = reference_from_camera.t;
-  const Eigen::Matrix3f& rv = view_from_reference_.r;
-  const Eigen::Vector3f& tv = view_from_reference_.t;
+  const Eigen::Matrix3f& rv = surfaces.camera_from_reference.r;
+  const Eigen::Vector3f& tv = surfaces.camera_from_reference.t;
   const float r00 = r(0, 0), r01 = r(0, 1), r02 = r(0, 2), r10 = r(1, 0), r11 = r(1, 1),
               r12 = r(1, 2), r20 = r(2, 0), r21 = r(2, 1), r22 = r(2, 2);
   const float v00 = rv(0, 0), v01 = rv(0, 1), v02 = rv(0, 2), v10 = rv(1, 0), v11 = rv(1, 1),
@@ -306,7 +314,7 @@ void Reprojector::follow_chunk(std::size_t first, std::size_t count,
   }
   for (std::size_t i = 0; i < count; ++i) {
     known[i] = planes_.data()[at[i]].inverse_depth;
-    rendered[i] = open_inverse_depth_.data()[at_view[i]];
+    rendered[i] = surfaces.open_inverse_depth.data()[at_view[i]];
   }
   for (std::size_t i = 0; i < count; ++i) {
     const float is_found = is_in[i] * mask(std::abs(known[i] - inverse[i]) <= same * inverse[i]) *
@@ -317,7 +325,8 @@ void Reprojector::follow_chunk(std::size_t first, std::size_t count,
   }
 }
 
-std::optional<Reprojection> Reprojector::find(int x, int y, const CameraPose& reference_from_camera,
+std::optional<Reprojection> Reprojector::find(int x, int y, const RenderedSurfaces& surfaces,
+                                              const CameraPose& reference_from_camera,
                                               const Eigen::Vector2f* earlier) const {
   const Eigen::Vector3f& ray = rays_(x, y);
   const Eigen::Vector3f& from = reference_from_camera.t;
@@ -327,26 +336,29 @@ std::optional<Reprojection> Reprojector::find(int x, int y, const CameraPose& re
   if (earlier != nullptr) {
     reprojection.x = earlier->x();
     reprojection.y = earlier->y();
-    if (intersect_surface(direction, from, reprojection, point) && is_visible(point))
+    if (intersect_surface(direction, from, reprojection, point) && is_visible(surfaces, point))
       return reprojection;
   }
-  if (guess(ray, direction, from, reprojection) &&
-      intersect_surface(direction, from, reprojection, point) && is_visible(point))
+  if (guess(ray, surfaces, direction, from, reprojection) &&
+      intersect_surface(direction, from, reprojection, point) && is_visible(surfaces, point))
     return reprojection;
   return std::nullopt;
 }
 
-bool Reprojector::guess(const Eigen::Vector3f& ray, const Eigen::Vector3f& direction,
-                        const Eigen::Vector3f& from, Reprojection& reprojection) const {
+bool Reprojector::guess(const Eigen::Vector3f& ray, const RenderedSurfaces& surfaces,
+                        const Eigen::Vector3f& direction, const Eigen::Vector3f& from,
+                        Reprojection& reprojection) const {
   // The rendered depth at the pixel, then the rendered depth at the projection of that point.
   const int at_pixel = view_index(ray);
   const float there =
-      at_pixel < 0 ? 0 : inverse_depth_.pixels()[static_cast<std::size_t>(at_pixel)];
+      at_pixel < 0 ? 0 : surfaces.inverse_depth.pixels()[static_cast<std::size_t>(at_pixel)];
   float z = there > 0 ? 1 / there : scene_.typical_depth_m;
   Eigen::Vector3f point = z * direction + from;
-  const Eigen::Vector3f in_view = view_from_reference_.r * point + view_from_reference_.t;
+  const CameraPose& view_from_reference = surfaces.camera_from_reference;
+  const Eigen::Vector3f in_view = view_from_reference.r * point + view_from_reference.t;
   const int moved = view_index(in_view);
-  const float rendered = moved < 0 ? 0 : inverse_depth_.pixels()[static_cast<std::size_t>(moved)];
+  const float rendered =
+      moved < 0 ? 0 : surfaces.inverse_depth.pixels()[static_cast<std::size_t>(moved)];
   if (rendered > 0) {
     z += 1 / rendered - in_view.z();
     point = z * direction + from;
@@ -370,12 +382,14 @@ bool Reprojector::intersect_surface(const Eigen::Vector3f& direction, const Eige
   return is_same_surface(plane->inverse_depth, reprojection.inverse_depth);
 }
 
-bool Reprojector::is_visible(const Eigen::Vector3f& point) const {
-  const Eigen::Vector3f in_view = view_from_reference_.r * point + view_from_reference_.t;
+bool Reprojector::is_visible(const RenderedSurfaces& surfaces, const Eigen::Vector3f& point) const {
+  const CameraPose& view_from_reference = surfaces.camera_from_reference;
+  const Eigen::Vector3f in_view = view_from_reference.r * point + view_from_reference.t;
   const int index = view_index(in_view);
   return index >= 0 &&
          is_same_surface(
-             open_inverse_depth_.pixels()[static_cast<std::size_t>(index)] * in_view.z(), 1);
+             surfaces.open_inverse_depth.pixels()[static_cast<std::size_t>(index)] * in_view.z(),
+             1);
 }
 
 }  // namespace saccade

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -54,6 +55,25 @@ struct ReprojectionOptions {
   int discontinuity_margin_px = 0;
 };
 
+/// Rows of a sensor's pixels, [begin, end).
+struct PixelRows {
+  int begin = 0, end = 0;
+};
+
+/// The surfaces as a camera sees them, for the depth test of poses near its own.
+struct RenderedSurfaces {
+  /// A pixel at a depth discontinuity.
+  struct Discontinuity {
+    Eigen::Vector3f ray;
+    float near, far;  ///< their depths [m]
+  };
+
+  ImageF inverse_depth;                        ///< [1/m], 0: nothing is known
+  ImageF open_inverse_depth;                   ///< the same, 0 near depth discontinuities
+  std::vector<Discontinuity> discontinuities;  ///< a sample of those pixels
+  CameraPose camera_from_reference;
+};
+
 /// Relative difference of depth up to which two depths are the same surface (depth test).
 inline constexpr double kSameSurfaceRatio = 0.05;
 
@@ -69,20 +89,21 @@ class Reprojector {
               const Rigid3& world_from_reference, const ImageF& reference_inverse_depth,
               const ReprojectionOptions& options);
 
-  /// Renders the surfaces anew if the camera has moved too far since the last rendering.
-  void prepare(const CameraPose& reference_from_camera);
+  /// The surfaces near a pose: those rendered last, or anew if the camera has moved too far since.
+  const std::shared_ptr<const RenderedSurfaces>& prepare(const CameraPose& reference_from_camera);
 
-  /// nullopt where no depth is known or the point is not visible in both views. After prepare() for a
-  /// pose nearby. `earlier`: the pixel's reprojection a little earlier, within the reference view, as
-  /// a first guess.
-  [[nodiscard]] std::optional<Reprojection> find(int x, int y,
+  /// nullopt where no depth is known or the point is not visible in both views. `surfaces`: of a pose nearby.
+  /// `earlier`: the pixel's reprojection a little earlier, within the reference view, as a first guess.
+  [[nodiscard]] std::optional<Reprojection> find(int x, int y, const RenderedSurfaces& surfaces,
                                                  const CameraPose& reference_from_camera,
                                                  const Eigen::Vector2f* earlier = nullptr) const;
 
-  /// The same for all pixels, into `reprojections`, from their reprojections a little earlier,
-  /// vectorised. Of pixels that had none, a fraction is searched in each call.
-  void follow(const CameraPose& reference_from_camera, const ReprojectionField& earlier,
-              ReprojectionField& reprojections);
+  /// The same for all pixels of some rows, into `reprojections`, from their reprojections a little
+  /// earlier, vectorised. Of pixels that had none, a fraction is searched in each `pass`, which counts
+  /// from 0: all in the first.
+  void follow(PixelRows rows, int pass, const RenderedSurfaces& surfaces,
+              const CameraPose& reference_from_camera, const ReprojectionField& earlier,
+              ReprojectionField& reprojections) const;
 
   /// Number of renderings.
   [[nodiscard]] int draws() const { return draws_; }
@@ -103,29 +124,26 @@ class Reprojector {
     Eigen::Vector3f normal;
     float inverse_depth;  ///< at the pixel; 0: unknown
   };
-  /// A pixel of the rendered view at a depth discontinuity.
-  struct Discontinuity {
-    Eigen::Vector3f ray;
-    float near, far;  ///< their depths [m]
-  };
-
   void set_planes(const ImageF& inverse_depth);
   /// A few visible points, evenly distributed over the camera's image.
   [[nodiscard]] std::vector<Eigen::Vector3f> samples(const CameraPose& reference_from_camera) const;
-  void follow_chunk(std::size_t first, std::size_t count, const CameraPose& reference_from_camera,
-                    const ReprojectionField& earlier, ReprojectionField& reprojections) const;
-  void mark_discontinuities();
+  void follow_chunk(std::size_t first, std::size_t count, const RenderedSurfaces& surfaces,
+                    const CameraPose& reference_from_camera, const ReprojectionField& earlier,
+                    ReprojectionField& reprojections) const;
+  void mark_discontinuities(RenderedSurfaces& surfaces) const;
   /// Largest parallax at a depth discontinuity since the last rendering [px].
   [[nodiscard]] double parallax_px(const CameraPose& reference_from_camera) const;
   /// First guess along the ray from + z direction, from the rendered depth.
-  [[nodiscard]] bool guess(const Eigen::Vector3f& ray, const Eigen::Vector3f& direction,
-                           const Eigen::Vector3f& from, Reprojection& reprojection) const;
+  [[nodiscard]] bool guess(const Eigen::Vector3f& ray, const RenderedSurfaces& surfaces,
+                           const Eigen::Vector3f& direction, const Eigen::Vector3f& from,
+                           Reprojection& reprojection) const;
   /// Intersects the ray with the surface near a first guess; false without an intersection.
   [[nodiscard]] bool intersect_surface(const Eigen::Vector3f& direction,
                                        const Eigen::Vector3f& from, Reprojection& reprojection,
                                        Eigen::Vector3f& point) const;
   /// Depth test of a point of the reference view; false near depth discontinuities.
-  [[nodiscard]] bool is_visible(const Eigen::Vector3f& point) const;
+  [[nodiscard]] bool is_visible(const RenderedSurfaces& surfaces,
+                                const Eigen::Vector3f& point) const;
 
   /// Index of the rendered view's pixel nearest to the projection of a point; -1: outside.
   [[nodiscard]] int view_index(const Eigen::Vector3f& in_view) const {
@@ -160,16 +178,12 @@ class Reprojector {
   Rigid3 world_from_reference_;
   ReprojectionOptions options_;
   float fx_, fy_, cx_, cy_;
-  float margin_;                                ///< of the rendered view around the camera's [px]
-  Image<Eigen::Vector3f> rays_;                 ///< of the sensor's pixels, z = 1
-  ImageF ray_x_, ray_y_;                        ///< the same
-  Image<Plane> planes_;                         ///< of the reference view
-  ImageF inverse_depth_;                        ///< of the rendered view
-  ImageF open_inverse_depth_;                   ///< the same, 0 near depth discontinuities
-  std::vector<Discontinuity> discontinuities_;  ///< a sample of those pixels
-  CameraPose view_from_reference_;
+  float margin_;                 ///< of the rendered view around the camera's [px]
+  Image<Eigen::Vector3f> rays_;  ///< of the sensor's pixels, z = 1
+  ImageF ray_x_, ray_y_;         ///< the same
+  Image<Plane> planes_;          ///< of the reference view
+  std::shared_ptr<const RenderedSurfaces> surfaces_;  ///< rendered last
   int draws_ = 0;
-  int follow_passes_ = 0;
 };
 
 [[nodiscard]] CameraPose inverse_of(const CameraPose& pose);

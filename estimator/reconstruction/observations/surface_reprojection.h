@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <cstddef>
+#include <memory>
 #include <optional>
 
 #include "core/camera.h"
@@ -19,52 +22,73 @@ namespace saccade {
 class SurfaceReprojection {
  public:
   /// `reference_inverse_depth`: of the reference view. All but the options outlive this.
-  /// `max_motion_px`: most image motion from one instant to the next, beside a limit of 2 px.
   SurfaceReprojection(const PinholeCamera& camera, const DepthScene& scene,
                       const Rigid3& world_from_reference, const ImageF& reference_inverse_depth,
-                      const ReprojectionOptions& options, double max_motion_px);
+                      const ReprojectionOptions& options);
 
-  void start(const Trajectory& world_from_camera, TimeNs t_ns);
-  /// To the next instant, at most `last_ns`.
-  void advance(const Trajectory& world_from_camera, TimeNs last_ns);
-
-  /// Time and pose of the last instant.
-  [[nodiscard]] TimeNs end_ns() const { return end_.t_ns; }
-  [[nodiscard]] const CameraPose& end_pose() const { return end_.reference_from_camera; }
-
-  /// Of an event between the last two instants.
-  [[nodiscard]] std::optional<Reprojection> of(const Event& event) const;
-  /// Of a pixel at the last instant.
-  [[nodiscard]] std::optional<Reprojection> at_end(int x, int y) const {
-    const std::size_t i = index_of(x, y);
-    const ReprojectionField& at = end_.reprojections;
-    if (!(at.inverse_depth[i] > 0)) return std::nullopt;
-    return Reprojection{at.x[i], at.y[i], at.inverse_depth[i]};
-  }
-  /// Image motion from an earlier pose to the last instant, the maximum over a few points [px];
-  /// infinity where one was behind the camera.
-  [[nodiscard]] double moved_px(const CameraPose& earlier_from_reference) const {
-    return projector_.moved_px(end_.reference_from_camera, earlier_from_reference);
-  }
-
- private:
-  /// All pixels at one time.
   struct Instant {
     TimeNs t_ns = 0;
     CameraPose reference_from_camera;
-    ReprojectionField reprojections;
+    std::shared_ptr<const RenderedSurfaces> surfaces;
+    int number = 0;  ///< from the first on
+
+    [[nodiscard]] const CameraPose& pose() const { return reference_from_camera; }
   };
 
+  /// The instants are found by one thread, while others use those that it found before.
+  [[nodiscard]] Instant first(const Trajectory& world_from_camera, TimeNs t_ns);
+  /// The one after another, at most `last_ns`.
+  [[nodiscard]] Instant next(const Instant& from, const Trajectory& world_from_camera,
+                             TimeNs last_ns);
+
+  /// Finds the reprojections of the pixels of some rows, which other threads do not use meanwhile. Called for
+  /// each instant in turn; those of the one before are kept, too.
+  void follow(const Instant& instant, PixelRows rows);
+
+  /// Of an event between the two instants that were followed last.
+  [[nodiscard]] std::optional<Reprojection> of(const Event& event, const Instant& begin,
+                                               const Instant& end) const;
+  /// Of a pixel between them, where it observes one surface at both.
+  [[nodiscard]] std::optional<Reprojection> between(int x, int y, const Instant& begin,
+                                                    const Instant& end, float fraction) const {
+    const std::size_t i = index_of(x, y);
+    const ReprojectionField& a = field_of(begin);
+    const ReprojectionField& b = field_of(end);
+    const float change = b.inverse_depth[i] - a.inverse_depth[i];
+    if (!(a.inverse_depth[i] > 0 && b.inverse_depth[i] > 0 &&
+          std::abs(change) <= static_cast<float>(kSameSurfaceRatio) * a.inverse_depth[i]))
+      return std::nullopt;
+    return Reprojection{a.x[i] + fraction * (b.x[i] - a.x[i]),
+                        a.y[i] + fraction * (b.y[i] - a.y[i]),
+                        a.inverse_depth[i] + fraction * change};
+  }
+  /// Of a pixel at the instant that was followed last.
+  [[nodiscard]] std::optional<Reprojection> at(int x, int y, const Instant& instant) const {
+    const std::size_t i = index_of(x, y);
+    const ReprojectionField& field = field_of(instant);
+    if (!(field.inverse_depth[i] > 0)) return std::nullopt;
+    return Reprojection{field.x[i], field.y[i], field.inverse_depth[i]};
+  }
+  /// Image motion from an earlier pose to the newest instant, the maximum over a few points [px];
+  /// infinity where one was behind the camera.
+  [[nodiscard]] double moved_px(const Instant& newest,
+                                const CameraPose& earlier_from_reference) const {
+    return projector_.moved_px(newest.reference_from_camera, earlier_from_reference);
+  }
+
+ private:
   [[nodiscard]] std::size_t index_of(int x, int y) const {
     return static_cast<std::size_t>(y * width_ + x);
+  }
+  [[nodiscard]] const ReprojectionField& field_of(const Instant& instant) const {
+    return fields_[static_cast<std::size_t>(instant.number % 2)];
   }
 
   Reprojector projector_;
   Rigid3 reference_from_world_;
   int width_;
-  double max_motion_px_;
-  Instant begin_, end_;             ///< around the current events
-  TimeNs interval_ns_ = 1'000'000;  ///< last interval between them
+  std::array<ReprojectionField, 2> fields_;  ///< of instants with even and odd numbers
+  TimeNs interval_ns_ = 1'000'000;           ///< last interval between them
 };
 
 }  // namespace saccade

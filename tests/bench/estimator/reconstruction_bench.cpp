@@ -11,6 +11,7 @@
 #include "estimator/reconstruction/observations/reprojector.h"
 #include "estimator/reconstruction/reconstruction_config.h"
 #include "estimator/run/view_windows.h"
+#include "tests/support/intensity_observations.h"
 #include "tests/support/planar_world.h"
 
 namespace saccade {
@@ -64,10 +65,7 @@ std::vector<IntensityObservation> observations_of_recording() {
   const Recording& r = recording();
   SurfaceObservations source(r.world.camera(), r.scene, r.world_from_reference, r.inverse_depth,
                              {kContrast, kContrast}, EquationOptions{}.observations);
-  source.plan(r.events);
-  std::vector<IntensityObservation> observations;
-  source.observe(r.events, r.trajectory, observations);
-  return observations;
+  return testing::observations_of(source, r.events, r.trajectory, 1);
 }
 
 /// Reprojections of all pixels at one pose, on surfaces that are rendered already.
@@ -77,10 +75,11 @@ void reprojections(benchmark::State& state) {
                           EquationOptions{}.observations.reprojection);
   const Rigid3 motion = r.world_from_reference.inverse() * corner_motion(0.25);
   const CameraPose pose{motion.rotation_matrix().cast<float>(), motion.translation().cast<float>()};
-  reprojector.prepare(pose);
+  const auto surfaces = reprojector.prepare(pose);
   for (auto _ : state)
     for (int y = 0; y < 180; ++y)
-      for (int x = 0; x < 240; ++x) benchmark::DoNotOptimize(reprojector.find(x, y, pose));
+      for (int x = 0; x < 240; ++x)
+        benchmark::DoNotOptimize(reprojector.find(x, y, *surfaces, pose));
   items_per_second(state, r.inverse_depth.size());
 }
 BENCHMARK(reprojections)->Unit(benchmark::kMicrosecond);
@@ -110,8 +109,9 @@ std::vector<std::vector<GridObservation>> runs_of(
   std::vector<std::vector<GridObservation>> runs;
   for (const IntensityObservation& observation : observations) {
     if (observation.run() >= runs.size()) runs.resize(observation.run() + 1);
-    runs[observation.run()].push_back(
-        {grid.at(observation.x, observation.y), observation.log_intensity, 100});
+    runs[observation.run()].push_back({observation.x, observation.y,
+                                       grid.at(observation.x, observation.y),
+                                       observation.log_intensity, 100});
   }
   return runs;
 }
@@ -120,7 +120,7 @@ void assemble(const std::vector<std::vector<GridObservation>>& runs, const Refer
               IntensitySystem& system) {
   system.clear();
   for (const auto& run : runs)
-    if (run.size() > 1) system.add_run(run);
+    if (run.size() > 1) system.add_run(0, run);
   for (int i = 0; i + 1 < grid.width() * grid.height(); ++i)
     if ((i + 1) % grid.width() != 0) system.add_smoothness_term(i, i + 1, 1);
 }

@@ -4,6 +4,8 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -21,9 +23,10 @@ std::vector<std::vector<GridObservation>> random_tracks(const ReferenceGrid& gri
   const auto uniform = [&] { return static_cast<float>(random.uniform(1, draw++)); };
   std::vector<std::vector<GridObservation>> runs(80);
   for (auto& run : runs)
-    for (int k = 0; k < 6; ++k)
-      run.push_back({grid.at((kWidth - 1) * uniform(), (kHeight - 1) * uniform()), uniform(),
-                     0.5F + uniform()});
+    for (int k = 0; k < 6; ++k) {
+      const float x = (kWidth - 1) * uniform(), y = (kHeight - 1) * uniform();
+      run.push_back({x, y, grid.at(x, y), uniform(), 0.5F + uniform()});
+    }
   return runs;
 }
 
@@ -68,7 +71,7 @@ TEST(IntensitySystem, EqualsTheDenseProblemWithOffsets) {
   const ReferenceGrid grid(ImageF(kWidth, kHeight, 1.0F));
   const auto runs = random_tracks(grid);
   IntensitySystem system(kWidth, kHeight);
-  for (const auto& run : runs) system.add_run(run);
+  for (const auto& run : runs) system.add_run(0, run);
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x + 1 < kWidth; ++x)
       system.add_smoothness_term(y * kWidth + x + 1, y * kWidth + x, 0.1F);
@@ -77,6 +80,45 @@ TEST(IntensitySystem, EqualsTheDenseProblemWithOffsets) {
   for (int i = 0; i < kWidth * kHeight; ++i) EXPECT_NEAR(found[i], expected[i], 2e-3) << i;
   // Started from its solution it has converged.
   EXPECT_LE(system.solve(500, 1e-4, solution.image).iterations, 3);
+}
+
+/// Paths of pixels over a view of which one half moves a hundred times as often as the other.
+TEST(IntensitySystem, UnevenObservationsTakeFewIterations) {
+  constexpr int kSize = 96;
+  const ReferenceGrid grid(ImageF(kSize, kSize, 1.0F));
+  const Random random(7);
+  const auto solve = [&](std::size_t parts) {
+    IntensitySystem system(kSize, kSize, false, parts);
+    std::uint64_t draw = 0;
+    const auto uniform = [&] { return static_cast<float>(random.uniform(2, draw++)); };
+    for (std::size_t t = 0; t < 20'000; ++t) {
+      const bool is_dense = t % 100 != 0, is_along_x = t % 2 == 0;
+      const float x = (is_dense ? 0.5F : 0) * kSize + 0.3F * kSize * uniform();
+      const float y = (kSize - 13) * uniform();
+      std::vector<GridObservation> run;
+      for (int k = 0; k < 12; ++k) {
+        const float u = x + static_cast<float>(is_along_x ? k : 0);
+        const float v = y + static_cast<float>(is_along_x ? 0 : k);
+        run.push_back({u, v, grid.at(u, v), std::sin(0.05F * u) + 0.1F * uniform(), 100});
+      }
+      system.add_run(t % parts, run);
+    }
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize; ++x) {
+        const int i = y * kSize + x;
+        if (x + 1 < kSize) system.add_smoothness_term(i, i + 1, 25);
+        if (y + 1 < kSize) system.add_smoothness_term(i, i + kSize, 25);
+      }
+    return system.solve(400, 1e-4);
+  };
+  const GridSolution whole = solve(1), divided = solve(5);
+  EXPECT_LE(whole.iterations, 30);
+  EXPECT_LE(whole.residual, 1e-4);
+  // Who adds a run makes no difference.
+  const Eigen::VectorXd difference = without_mean(whole.image) - without_mean(divided.image);
+  EXPECT_LT(difference.cwiseAbs().maxCoeff(), 2e-3);
+  // The wave that is seen, where it is seen.
+  EXPECT_NEAR(whole.image(80, 50) - whole.image(55, 50), std::sin(4.0F) - std::sin(2.75F), 0.03F);
 }
 
 /// Where the columns of an image that goes around begin makes no difference.
@@ -93,9 +135,9 @@ TEST(IntensitySystem, HasNoSeamWhereItWraps) {
         const float x = kWidth * uniform() + static_cast<float>(shift);
         const float y = (kWidth / 2 - 1) * uniform();
         const float observation = uniform();
-        run.push_back({grid.at(x, y), observation, 0.5F + uniform()});
+        run.push_back({x, y, grid.at(x, y), observation, 0.5F + uniform()});
       }
-      system.add_run(run);
+      system.add_run(0, run);
     }
     for (int y = 0; y < grid.height(); ++y)
       for (int x = 0; x < grid.width(); ++x) {

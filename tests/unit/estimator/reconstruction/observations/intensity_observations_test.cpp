@@ -2,12 +2,23 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <set>
+#include <utility>
 #include <vector>
+
+#include "core/depth_mesh.h"
+#include "tests/support/intensity_observations.h"
+#include "tests/support/planar_world.h"
 
 namespace saccade {
 namespace {
+
+using testing::corner_motion;
+using testing::PlanarWorld;
 
 TEST(SurfaceObservations, ConstrainsPixelsWithoutEventsInTurn) {
   const PinholeCamera camera{24, 18, 20, 20, 11.5, 8.5, {}};
@@ -25,8 +36,7 @@ TEST(SurfaceObservations, ConstrainsPixelsWithoutEventsInTurn) {
     options.reprojection.redraw_motion_px = 1;
     options.no_event_stride = stride;
     SurfaceObservations source(camera, scene, Rigid3(), reference, {0.2, 0.2}, options);
-    std::vector<IntensityObservation> observations;
-    source.observe(events, motion, observations);
+    const auto observations = testing::observations_of(source, events, motion, 1);
     std::set<std::uint32_t> runs;
     int constraints = 0;
     for (const IntensityObservation& observation : observations) {
@@ -54,8 +64,7 @@ TEST(SurfaceObservations, TheFirstEventIsAThresholdFromWhatThePixelSawAtTheStart
   options.no_event_constraints = false;
   options.first_event_sigma = 0.8;
   SurfaceObservations source(camera, scene, Rigid3(), reference, {0.2, 0.3}, options);
-  std::vector<IntensityObservation> observations;
-  source.observe(events, motion, observations);
+  const auto observations = testing::observations_of(source, events, motion, 1);
   // Of the first pixel two, of the other three, its start at its place before the motion.
   ASSERT_EQ(observations.size(), 5U);
   const IntensityObservation& start = observations[2];
@@ -89,9 +98,7 @@ TEST(SurfaceObservations, LeakingPixelsBeginAboveTheirReferences) {
   for (const bool removes : {false, true}) {
     options.remove_bias = removes;
     SurfaceObservations source(camera, scene, Rigid3(), reference, {0.2, 0.2}, options);
-    std::vector<IntensityObservation> observations;
-    source.plan(events);
-    source.observe(events, motion, observations);
+    const auto observations = testing::observations_of(source, events, motion, 1);
     // The second pixel: its start, and a threshold above its reference.
     const IntensityObservation& start = observations[2];
     EXPECT_NEAR(start.log_intensity, removes ? 0.8 * 0.2 : 0, 0.005);
@@ -105,6 +112,39 @@ TEST(SurfaceObservations, LeakingPixelsBeginAboveTheirReferences) {
     EXPECT_NEAR(expected[0], removes ? 0.2 * 0.4 * 0.2 : 0.4 * 0.2, 0.002);
     EXPECT_NEAR(expected[1], removes ? -1.8 * 0.4 * 0.2 : -0.4 * 0.2, 0.002);
   }
+}
+
+/// Bands of rows see what the whole sensor sees, pixel by pixel.
+TEST(SurfaceObservations, AreThoseOfTheWholeSensorInBands) {
+  const PlanarWorld world = testing::corner_world(120, 90);
+  const Events events = world.simulate(corner_motion, 0, 0.1, 1e-3, 0.2);
+  std::vector<StampedPose> poses;
+  for (int i = 0; i <= 100; ++i) poses.push_back({i * 1e-3, corner_motion(i * 1e-3)});
+  const Trajectory motion(std::move(poses));
+  const DepthMesh mesh(world.depth(corner_motion(0)), world.camera());
+  DepthScene scene;
+  scene.draw = [&](const Rigid3& camera_from_world, const PinholeCamera& target, ImageF& inverse) {
+    mesh.draw(camera_from_world * corner_motion(0), target, inverse);
+  };
+  ImageF reference(120, 90);
+  scene.draw(corner_motion(0).inverse(), world.camera(), reference);
+  ObservationOptions options;
+  options.no_event_spacing_px = 0.8;
+  options.no_event_stride = 4;
+  options.first_event_sigma = 0.8;
+  const auto sorted = [&](std::size_t bands) {
+    SurfaceObservations source(world.camera(), scene, corner_motion(0), reference, {0.2, 0.2},
+                               options);
+    std::vector<std::array<float, 4>> all;
+    for (const IntensityObservation& o : testing::observations_of(source, events, motion, bands))
+      all.push_back({o.x, o.y, o.log_intensity, static_cast<float>(o.kind())});
+    std::sort(all.begin(), all.end());
+    return all;
+  };
+  const auto whole = sorted(1);
+  EXPECT_GT(whole.size(), events.size());
+  EXPECT_EQ(sorted(7), whole);
+  EXPECT_EQ(sorted(200), whole);  // more than rows
 }
 
 }  // namespace

@@ -43,14 +43,14 @@ TEST(Reprojector, FindsTheObservedPoint) {
   };
   // The surfaces are rendered at one time and read at another, within the allowed motion.
   reprojector.prepare(pose_at(0.09));
-  reprojector.prepare(pose_at(0.102));
+  const auto surfaces = reprojector.prepare(pose_at(0.102));
   EXPECT_EQ(reprojector.draws(), 1);
   const ImageF depth = corner.world.depth(corner_motion(0.102));
   int found = 0, good = 0;
   for (int y = 5; y < 85; ++y)
     for (int x = 5; x < 115; ++x) {
       const auto z = static_cast<double>(depth(x, y));
-      const auto reprojection = reprojector.find(x, y, pose_at(0.102));
+      const auto reprojection = reprojector.find(x, y, *surfaces, pose_at(0.102));
       if (!(z > 0) || !reprojection) continue;
       const Eigen::Vector3d point =
           corner_motion(0).inverse() * (corner_motion(0.102) * (z * camera.ray({x, y})));
@@ -69,15 +69,15 @@ TEST(Reprojector, AnEarlierReprojectionIsAFirstGuessOnly) {
   Reprojector reprojector(camera, corner.scene, corner_motion(0), corner.reference, {});
   const Rigid3 motion = corner_motion(0).inverse() * corner_motion(0.05);
   const CameraPose pose{motion.rotation_matrix().cast<float>(), motion.translation().cast<float>()};
-  reprojector.prepare(pose);
+  const auto surfaces = reprojector.prepare(pose);
   int found = 0, good = 0;
   for (int y = 5; y < 85; ++y)
     for (int x = 5; x < 115; ++x) {
-      const auto reprojection = reprojector.find(x, y, pose);
+      const auto reprojection = reprojector.find(x, y, *surfaces, pose);
       if (!reprojection) continue;
       const Eigen::Vector2f off(std::min(reprojection->x + 4, 119.0F),
                                 std::max(reprojection->y - 3, 0.0F));
-      const auto again = reprojector.find(x, y, pose, &off);
+      const auto again = reprojector.find(x, y, *surfaces, pose, &off);
       ASSERT_TRUE(again.has_value()) << x << " " << y;
       ++found;
       good += std::hypot(reprojection->x - again->x, reprojection->y - again->y) < 0.02F ? 1 : 0;
@@ -125,10 +125,11 @@ TEST(Reprojector, FindsNothingNearADepthDiscontinuity) {
   for (const int margin : {0, 1, 3}) {
     Reprojector reprojector(camera, scene, Rigid3(), reference,
                             {.discontinuity_margin_px = margin});
-    reprojector.prepare(at_reference);
+    const auto surfaces = reprojector.prepare(at_reference);
     for (int x = 0; x < 40; ++x) {
       const bool is_near = x >= 20 - margin && x < 20 + margin;
-      EXPECT_EQ(reprojector.find(x, 15, at_reference).has_value(), !is_near) << margin << " " << x;
+      EXPECT_EQ(reprojector.find(x, 15, *surfaces, at_reference).has_value(), !is_near)
+          << margin << " " << x;
     }
   }
 }
