@@ -9,7 +9,7 @@ namespace {
 /// Waves that are shorter than an event run, some ten pixels, are told by every observation and need no coarse
 /// grid. Cells of 2 to 8 px take the same number of iterations within one or two, and the finer ones more time.
 constexpr int kCell_px = 4;
-/// Of the mean diagonal: the constant of the image is told by nothing.
+/// Of the mean diagonal: without levels the constant of the image is told by nothing.
 constexpr double kRegularisation = 1e-6;
 
 using Matrix4 = Eigen::Matrix4d;
@@ -31,6 +31,13 @@ Matrix4 element(const Stiffness& m, const Eigen::Vector2d& cell_px) {
       result += 0.25 * slopes.transpose() * tensor * slopes;
     }
   return result;
+}
+
+/// Integral over a cell of the products of its corners' bilinear functions.
+Matrix4 levels(double weight, const Eigen::Vector2d& cell_px) {
+  Matrix4 products;
+  products << 4, 2, 2, 1, 2, 4, 1, 2, 2, 1, 4, 2, 1, 2, 2, 4;
+  return weight * cell_px.prod() / 36 * products;
 }
 
 }  // namespace
@@ -104,13 +111,15 @@ Eigen::VectorXd CoarseGrid::gathered(const std::vector<float>& image) const {
   return nodes;
 }
 
-CoarseImage::CoarseImage(const CoarseGrid& grid, std::span<const Stiffness> stiffness)
+CoarseImage::CoarseImage(const CoarseGrid& grid, std::span<const Stiffness> stiffness,
+                         double level_weight)
     : grid_(grid) {
   std::vector<Eigen::Triplet<double>> entries;
   double trace = 0;
   for (std::size_t cell = 0; cell < stiffness.size(); ++cell) {
     const std::array<Eigen::Index, 4> nodes = grid.nodes_of(cell);
-    const Matrix4 costs = element(stiffness[cell], grid.cell_px());
+    const Matrix4 costs =
+        element(stiffness[cell], grid.cell_px()) + levels(level_weight, grid.cell_px());
     trace += costs.trace();
     for (Eigen::Index i = 0; i < 4; ++i)
       for (Eigen::Index j = 0; j < 4; ++j)

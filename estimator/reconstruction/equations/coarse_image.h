@@ -64,14 +64,15 @@ class CoarseGrid {
   Axis columns_, rows_;
 };
 
-/// The coarse part of a preconditioner: the image of a coarse grid that minimises the stiffness of its
-/// slopes less its product with a residual. Finite elements, solved directly.
+/// The coarse part of a preconditioner: the image of a coarse grid that minimises what its slopes and levels
+/// cost, less its product with a residual. Finite elements, solved directly.
 class CoarseImage {
  public:
-  /// `stiffness` of every cell of the grid, which outlives this.
-  CoarseImage(const CoarseGrid& grid, std::span<const Stiffness> stiffness);
+  /// `stiffness` of every cell of the grid, which outlives this; `level_weight` of a pixel's square.
+  CoarseImage(const CoarseGrid& grid, std::span<const Stiffness> stiffness,
+              double level_weight = 0);
 
-  /// Adds the solution of a residual to an image; nothing where the stiffness is not finite.
+  /// Adds the solution of a residual to an image; nothing where the costs are not finite.
   void add(const std::vector<float>& residual, std::vector<float>& image) const;
 
  private:

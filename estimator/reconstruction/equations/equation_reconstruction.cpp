@@ -26,6 +26,10 @@ constexpr int kIterations = 60;
 constexpr float kOutlierSigmas = 3;
 /// Difference of neighbours from which on the prior is their absolute difference (total variation).
 constexpr float kHuberThreshold = 0.02F;
+/// Standard deviation of a view's log intensity about its mean, twice what scenes usually have: it shall hold what is hardly
+/// known alone, such as how one part of a view compares with another where few events lie between. The slopes of event
+/// runs err alike where thresholds are unequal or drift, so that many of them know less together than they say.
+constexpr float kLevelSigma = 2;
 /// As EquationOptions::smoothness_sigma, across an occluding contour: next to no prior.
 constexpr double kContourSigma = 20;
 
@@ -215,6 +219,7 @@ Reconstruction EquationReconstruction::solve(ObservationSource& source,
   }
   ImageF image;
   IntensitySystem system(grid.width(), grid.height(), grid.wraps(), kBands);
+  system.set_level_weight(1 / (kLevelSigma * kLevelSigma));
   for (int round = 0; round < kRounds; ++round) {
     {
       const ScopedTimer clock(assembly_s);

@@ -59,8 +59,8 @@ double dot(const std::vector<float>& a, const std::vector<float>& b) {
 class Preconditioner {
  public:
   Preconditioner(const std::vector<float>& diagonal, const CoarseGrid& grid,
-                 std::span<const Stiffness> stiffness)
-      : coarse_(grid, stiffness) {
+                 std::span<const Stiffness> stiffness, float level_weight)
+      : coarse_(grid, stiffness, static_cast<double>(level_weight)) {
     const double mean = std::accumulate(diagonal.begin(), diagonal.end(), 0.0) /
                         static_cast<double>(diagonal.size());
     const auto least = static_cast<float>(1e-6 * mean);  // of pixels that nothing constrains
@@ -227,6 +227,9 @@ IntensitySystem::Stencil IntensitySystem::stencil(std::vector<float>& right_side
     for (std::size_t i = 0; i < rows_.size(); ++i) stencil[k][i] = rows_[i][k];
   }
   const auto width = static_cast<std::size_t>(columns_);
+  // Not of the repeated column.
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+    if (i % width < static_cast<std::size_t>(width_)) stencil[0][i] += level_weight_;
   const std::array<std::size_t, 4> corner = {0, 1, width, width + 1};
   for (const Part& part : parts_)
     for (std::size_t i = part.first; i < part.end; ++i) {
@@ -324,7 +327,7 @@ GridSolution IntensitySystem::solve(int iterations, double tolerance, const Imag
   const std::size_t n = r.size();
   PartSums sums(parts_.size());
   std::vector<float> x(n, 0), z(n), p, q(n);
-  const Preconditioner preconditioner(folded(stencil[0]), coarse_, stiffness());
+  const Preconditioner preconditioner(folded(stencil[0]), coarse_, stiffness(), level_weight_);
   GridSolution solution{ImageF(width_, height_), 0, 0};
   preconditioner.apply(r, z);
   const double full = std::max(dot(r, z), 1e-30);

@@ -38,7 +38,7 @@ using Corners = float __attribute__((vector_size(4 * sizeof(float))));
 
 /// Weighted linear least squares over the pixels of an image I and one offset c per event run:
 ///   min over I, c of  sum_k w_k (I(x_k) - c_run(k) - l_k)^2
-/// which leaves a constant of the image undetermined: it stays that of the first guess.
+/// which leaves a constant of the image undetermined: without a level weight it stays that of the first guess.
 /// The offsets are eliminated (Schur complement): with m_r the weighted mean of a run's rows and n_r
 /// the sum of its weights, the normal matrix is that of the pixels (a stencil) minus
 /// sum_r n_r m_r m_r^T. Solved by conjugate gradients. Of waves shorter than the runs every observation tells
@@ -63,6 +63,9 @@ class IntensitySystem {
   /// The observations of one event run. A point's four pixels are a square, the first its upper left
   /// corner; it may lie across the seam of an image that wraps. One thread for each part.
   void add_run(std::size_t part, std::span<const GridObservation> observations);
+
+  /// Adds w I^2 of every pixel; replaces what was added before.
+  void set_level_weight(float weight) { level_weight_ = weight; }
 
   /// Adds w (I(j) - I(i))^2 of two neighbours.
   void add_smoothness_term(int i, int j, float weight);
@@ -124,6 +127,7 @@ class IntensitySystem {
   std::vector<std::uint32_t> coarse_cell_;  ///< of every pixel of the unrolled image
   std::vector<Stiffness> smoothness_;       ///< of the coarse grid's cells
   std::vector<Part> parts_;
+  float level_weight_ = 0;
 };
 
 }  // namespace saccade

@@ -103,6 +103,24 @@ TEST(CoarseImage, FollowsATensorThatIsTurned) {
   EXPECT_GT(response(1, -1), 20 * response(1, 1));
 }
 
+/// The same pull everywhere lifts the image by itself over the weight, whatever slopes cost.
+TEST(CoarseImage, LevelsCostTheirWeight) {
+  for (const bool wraps : {false, true}) {
+    const CoarseGrid grid(33, 25, wraps);
+    const std::vector<Stiffness> stiffness(grid.cells(), {100, 0, 100});
+    const CoarseImage coarse(grid, stiffness, 4);
+    std::vector<float> pull(33 * 25, 1), image(pull.size(), 0);
+    // Nodes at the borders have half the area of the cells, but the whole pull of their pixels.
+    for (std::size_t i = 0; i < pull.size(); ++i) {
+      const bool is_side = !wraps && (i % 33 == 0 || i % 33 == 32);
+      const bool is_end = i / 33 == 0 || i / 33 == 24;
+      pull[i] = (is_side ? 0.5F : 1.0F) * (is_end ? 0.5F : 1.0F);
+    }
+    coarse.add(pull, image);
+    for (const float value : image) EXPECT_NEAR(value, 0.25, 0.008);
+  }
+}
+
 TEST(CoarseImage, AddsNothingWhereTheStiffnessIsNotFinite) {
   const CoarseGrid grid(9, 9, false);
   std::vector<Stiffness> stiffness(grid.cells(), {1, 0, 1});

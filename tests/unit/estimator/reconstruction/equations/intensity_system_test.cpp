@@ -121,6 +121,40 @@ TEST(IntensitySystem, UnevenObservationsTakeFewIterations) {
   EXPECT_NEAR(whole.image(80, 50) - whole.image(55, 50), std::sin(4.0F) - std::sin(2.75F), 0.03F);
 }
 
+/// Two halves of a view that nothing joins: each is seen but for a constant, which the level weight keeps at 0.
+TEST(IntensitySystem, LevelsOfPartsThatNothingComparesStayAtTheMean) {
+  const ReferenceGrid grid(ImageF(kWidth, kHeight, 1.0F));
+  const Random random(9);
+  std::uint64_t draw = 0;
+  const auto uniform = [&] { return static_cast<float>(random.uniform(3, draw++)); };
+  IntensitySystem system(kWidth, kHeight);
+  for (int t = 0; t < 400; ++t) {
+    std::vector<GridObservation> run;
+    const float left = t % 2 == 0 ? 0 : kWidth / 2, offset = 5 * uniform();
+    for (int k = 0; k < 6; ++k) {
+      const float x = left + (kWidth / 2 - 1) * uniform(), y = (kHeight - 1) * uniform();
+      run.push_back({x, y, grid.at(x, y), std::sin(x) + offset, 100});
+    }
+    system.add_run(0, run);
+  }
+  const auto means = [&](float weight) {
+    system.set_level_weight(weight);
+    ImageF far_apart(kWidth, kHeight);
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) far_apart(x, y) = x < kWidth / 2 ? -3.0F : 2.0F;
+    const ImageF image = system.solve(500, 1e-6, far_apart).image;
+    Eigen::Vector2d sums(0, 0);
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x)
+        sums[x < kWidth / 2 ? 0 : 1] += static_cast<double>(image(x, y));
+    return Eigen::Vector2d(sums / (kWidth * kHeight / 2));
+  };
+  const Eigen::Vector2d free = means(0), held = means(0.1F);
+  EXPECT_GT((free - held).norm(), 0.3);
+  EXPECT_NEAR(held[0], 0, 0.02);
+  EXPECT_NEAR(held[1], 0, 0.02);
+}
+
 /// Where the columns of an image that goes around begin makes no difference.
 TEST(IntensitySystem, HasNoSeamWhereItWraps) {
   const ReferenceGrid grid(Panorama{kWidth, 0, 0, kWidth, kWidth / 2});
