@@ -40,19 +40,32 @@ class PanoramaContrast {
     const double start_s = seconds_from_ns(events_.front().t_ns);
     const PoseTable poses(without_rate(poses_, rate, start_s), Rigid3(), events_.front().t_ns,
                           events_.back().t_ns);
-    // A pixel beyond the last column of a panorama that wraps is at its border.
-    ImageF image(panorama_.width, panorama_.height);
-    for (const Event& event : events_) {
-      const auto p = projector_.find(event.x, event.y, poses.at(event.t_ns));
-      if (p && is_inside(image, p->x, p->y)) splat(image, p->x, p->y, 1.0F);
-    }
+    // Two images, so that two threads have something to do where there is one rate to look at.
+    std::array<ImageF, 2> halves;
+    parallel_for(halves.size(), [&](std::size_t k) {
+      const std::size_t begin = k * events_.size() / halves.size();
+      const std::size_t end = (k + 1) * events_.size() / halves.size();
+      halves[k] = image_of(events_.subspan(begin, end - begin), poses);
+    });
     double sum = 0;
-    for (const float count : image.pixels())
-      sum += static_cast<double>(count) * static_cast<double>(count);
+    for (std::size_t i = 0; i < halves[0].size(); ++i) {
+      const auto count = static_cast<double>(halves[0].pixels()[i] + halves[1].pixels()[i]);
+      sum += count * count;
+    }
     return sum;
   }
 
  private:
+  [[nodiscard]] ImageF image_of(std::span<const Event> events, const PoseTable& poses) const {
+    // A pixel beyond the last column of a panorama that wraps is at its border.
+    ImageF image(panorama_.width, panorama_.height);
+    for (const Event& event : events) {
+      const auto p = projector_.find(event.x, event.y, poses.at(event.t_ns));
+      if (p && is_inside(image, p->x, p->y)) splat(image, p->x, p->y, 1.0F);
+    }
+    return image;
+  }
+
   std::span<const Event> events_;
   const Trajectory& poses_;
   Panorama panorama_;
@@ -134,12 +147,13 @@ Trajectory without_rate(const Trajectory& world_from_camera, const Eigen::Vector
 Eigen::Vector3d sharpest_rate_offset(std::span<const Event> events, const PinholeCamera& camera,
                                      const Trajectory& world_from_camera, double pixels_per_radian,
                                      std::size_t max_events) {
-  const Events sample = subsampled(events, max_events);
   const double duration_s =
-      std::max(seconds_from_ns(sample.back().t_ns - sample.front().t_ns), 1e-3);
+      std::max(seconds_from_ns(events.back().t_ns - events.front().t_ns), 1e-3);
   const auto orientations = orientations_of(world_from_camera, events);
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();
   for (int level = kPyramidLevels - 1; level >= 0; --level) {
+    // A coarse panorama has fewer pixels to tell apart, and what it finds is where the next one begins.
+    const Events sample = subsampled(events, max_events >> level);
     const Panorama panorama =
         panorama_around(FieldOfView(camera), orientations, pixels_per_radian / (1 << level));
     // One pixel between the first and the last event.
