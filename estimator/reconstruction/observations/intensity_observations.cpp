@@ -212,29 +212,32 @@ auto ReprojectedObservations<Path>::first_step(const Trajectory& world_from_came
   return step;
 }
 
-/// The image moves nearly evenly from one instant to the next.
+/// The image moves nearly evenly from one instant to the next, by a few pixels at most; where poses jump, as if it did.
 template <class Path>
 void ReprojectedObservations<Path>::time_constraints(Step& step) {
+  constexpr double kMost_px = 2;
   const auto add = [&](double fraction) {
     const TimeNs interval_ns = step.end.t_ns - step.begin.t_ns;
     step.constraints.push_back(
         {step.begin.t_ns + static_cast<TimeNs>(fraction * static_cast<double>(interval_ns)),
          static_cast<float>(fraction), constrained_++});
-    constrained_from_reference_ =
-        inverse_of(between(step.begin.pose(), step.end.pose(), static_cast<float>(fraction)));
+    constrained_from_reference_ = inverse_of(
+        saccade::between(step.begin.pose(), step.end.pose(), static_cast<float>(fraction)));
   };
   const double spacing_px = options_.no_event_spacing_px;
   const double before_px = path_.moved_px(step.begin, constrained_from_reference_);
   const double after_px = path_.moved_px(step.end, constrained_from_reference_);
   if (after_px < spacing_px) return;
   const double step_px = path_.moved_px(step.end, inverse_of(step.begin.pose()));
-  if (!std::isfinite(after_px) || !(step_px > 0)) {
+  // Points are behind the camera.
+  if (!std::isfinite(before_px) || !std::isfinite(after_px) || !(step_px > 0)) {
     add(1);
     return;
   }
-  const double first = (spacing_px - before_px) / (after_px - before_px);
-  for (double fraction = std::max(first, 0.0); fraction <= 1; fraction += spacing_px / step_px)
-    add(fraction);
+  const double apart = spacing_px / std::min(step_px, kMost_px);
+  double fraction =
+      before_px < spacing_px ? (spacing_px - before_px) / (after_px - before_px) : 0.0;
+  for (; fraction <= 1; fraction += apart) add(fraction);
 }
 
 template <class Path>

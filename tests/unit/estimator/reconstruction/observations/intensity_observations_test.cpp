@@ -52,6 +52,24 @@ TEST(SurfaceObservations, ConstrainsPixelsWithoutEventsInTurn) {
   }
 }
 
+/// Poses that jump by 10 px at once, as of motion capture that lost its markers: no constraint for every half pixel of it.
+TEST(SurfaceObservations, AJumpOfThePosesIsNoMotion) {
+  const PinholeCamera camera{24, 18, 20, 20, 11.5, 8.5, {}};
+  DepthScene scene;
+  scene.draw = [](const Rigid3&, const PinholeCamera&, ImageF& inverse) { inverse.fill(1); };
+  const ImageF reference(24, 18, 1);
+  const Rigid3 aside(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0.5, 0, 0));
+  const Trajectory motion({{0, Rigid3()}, {0.05, Rigid3()}, {0.05001, aside}, {0.1, aside}});
+  const Events events{
+      {0, 1, 1, 1}, {50'000'000, 1, 1, 1}, {50'010'000, 1, 1, 1}, {100'000'000, 1, 1, 1}};
+  ObservationOptions options;
+  options.no_event_spacing_px = 0.5;
+  SurfaceObservations source(camera, scene, Rigid3(), reference, {0.2, 0.2}, options);
+  const auto observations = testing::observations_of(source, events, motion, 1);
+  EXPECT_GT(observations.size(), 24U * 18U);  // the first ones
+  EXPECT_LT(observations.size(), 6U * 24U * 18U);
+}
+
 TEST(SurfaceObservations, TheFirstEventIsAThresholdFromWhatThePixelSawAtTheStart) {
   const PinholeCamera camera{24, 18, 20, 20, 11.5, 8.5, {}};
   DepthScene scene;
