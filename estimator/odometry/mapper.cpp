@@ -238,7 +238,9 @@ void Mapper::renew(std::span<const Event> events, const Trajectory& poses,
 void Mapper::add_image(std::span<const Event> events, const Trajectory& poses,
                        Keyframe& keyframe) const {
   if (!keyframe.image.log_image.empty() || keyframe.depth.points.empty()) return;
-  reconstruct(window_of(events, poses, keyframe), dense_depth(keyframe), keyframe);
+  const PinholeCamera camera = camera_.undistorted();
+  const ImageF depth = coarse_surface_through(surface_points(keyframe.depth, camera), camera);
+  reconstruct(window_of(events, poses, keyframe), depth, keyframe);
 }
 
 DepthResult Mapper::certain(DepthResult depth) const {

@@ -63,6 +63,34 @@ void expand_locally(PlaneLabels& labels, const Image<std::pair<int, int>>& cells
     }
 }
 
+/// The camera of squares of 2 x 2 pixels.
+PinholeCamera halved(const PinholeCamera& camera) {
+  PinholeCamera half = camera;
+  half.width = (camera.width + 1) / 2;
+  half.height = (camera.height + 1) / 2;
+  half.fx /= 2;
+  half.fy /= 2;
+  half.cx = (camera.cx - 0.5) / 2;
+  half.cy = (camera.cy - 0.5) / 2;
+  return half;
+}
+
+/// Depth of the pixels between squares of 2 x 2: bilinear of those nearest squares that lie on the surface of the pixel's own.
+float depth_between(const ImageF& depth, int x, int y) {
+  constexpr float kSameSurface = 0.03F;  // relative, of squares beside each other
+  const auto beside = [](int pixel, int count) {
+    return std::clamp(pixel / 2 + (pixel % 2 == 0 ? -1 : 1), 0, count - 1);
+  };
+  const int u = x / 2, v = y / 2;
+  const int next_u = beside(x, depth.width()), next_v = beside(y, depth.height());
+  const float own = depth(u, v);
+  const auto of = [&](int column, int row) {
+    const float other = depth(column, row);
+    return std::abs(other - own) <= kSameSurface * own ? other : own;
+  };
+  return (9 * own + 3 * (of(next_u, v) + of(u, next_v)) + of(next_u, next_v)) / 16;
+}
+
 }  // namespace
 
 ImageF surface_through(std::span<const SurfacePoint> points, const PinholeCamera& camera) {
@@ -80,6 +108,14 @@ ImageF surface_through(std::span<const SurfacePoint> points, const PinholeCamera
   expand_everywhere();
   for (int y = 0; y < camera.height; ++y)
     for (int x = 0; x < camera.width; ++x) depth(x, y) = std::exp(-labels.log_inverse_depth(x, y));
+  return depth;
+}
+
+ImageF coarse_surface_through(std::span<const SurfacePoint> points, const PinholeCamera& camera) {
+  const ImageF coarse = surface_through(points, halved(camera));
+  ImageF depth(camera.width, camera.height);
+  for (int y = 0; y < camera.height; ++y)
+    for (int x = 0; x < camera.width; ++x) depth(x, y) = depth_between(coarse, x, y);
   return depth;
 }
 

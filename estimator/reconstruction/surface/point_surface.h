@@ -22,4 +22,9 @@ struct SurfacePoint {
 [[nodiscard]] ImageF surface_through(std::span<const SurfacePoint> points,
                                      const PinholeCamera& camera);
 
+/// The same, with planes chosen for squares of 2 x 2 pixels, in a quarter to half of the time: for pictures,
+/// which hardly change by it. Between squares of one surface the depth is interpolated; contours are right to a pixel.
+[[nodiscard]] ImageF coarse_surface_through(std::span<const SurfacePoint> points,
+                                            const PinholeCamera& camera);
+
 }  // namespace saccade

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 namespace saccade {
@@ -68,9 +69,33 @@ TEST(PointSurface, SlantedPlanesMeetAtTheirCrease) {
     }
 }
 
+/// A slanted wall behind a card, on a view of odd size.
+TEST(PointSurface, IsNearlyTheSameByCoarseSquares) {
+  const PinholeCamera camera{97, 71, 80, 80, 48.2, 35.1, {}};
+  const auto wall = [](int x, int) { return 1 / (0.3 + 0.001 * x); };
+  std::vector<SurfacePoint> points;
+  append_points(points, camera, {30, 20}, {60, 50}, 2, [](int, int) { return 1.0; });
+  append_points(points, camera, {0, 0}, {24, 70}, 2, wall);
+  append_points(points, camera, {66, 0}, {96, 70}, 2, wall);
+  const ImageF fine = surface_through(points, camera);
+  const ImageF coarse = coarse_surface_through(points, camera);
+  ASSERT_EQ(coarse.width(), 97);
+  ASSERT_EQ(coarse.height(), 71);
+  int differing = 0;
+  for (std::size_t i = 0; i < fine.size(); ++i)
+    differing += std::abs(coarse.pixels()[i] / fine.pixels()[i] - 1) > 0.01F ? 1 : 0;
+  EXPECT_LT(differing, 0.05 * static_cast<double>(fine.size()));
+  // Where surfaces do not end planes are planes.
+  for (const int x : {0, 7, 12, 85, 96})
+    for (const int y : {0, 33, 70})
+      EXPECT_NEAR(coarse(x, y) / wall(x, y), 1, 0.005) << x << " " << y;
+  for (const int x : {36, 45, 54}) EXPECT_NEAR(coarse(x, 35), 1, 0.005) << x;
+}
+
 TEST(PointSurface, WithoutPointsNothingIsKnown) {
-  const ImageF depth = surface_through({}, kSurfaceCamera);
-  for (const float z : depth.pixels()) EXPECT_EQ(z, 0);
+  for (const ImageF& depth :
+       {surface_through({}, kSurfaceCamera), coarse_surface_through({}, kSurfaceCamera)})
+    for (const float z : depth.pixels()) EXPECT_EQ(z, 0);
 }
 
 }  // namespace
