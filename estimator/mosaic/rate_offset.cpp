@@ -153,7 +153,7 @@ Eigen::Vector3d sharpest_rate_offset(std::span<const Event> events, const Pinhol
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();
   for (int level = kPyramidLevels - 1; level >= 0; --level) {
     // A coarse panorama has fewer pixels to tell apart, and what it finds is where the next one begins.
-    const Events sample = subsampled(events, max_events >> level);
+    const Events sample = subsampled(events, std::max<std::size_t>(max_events >> level, 1));
     const Panorama panorama =
         panorama_around(FieldOfView(camera), orientations, pixels_per_radian / (1 << level));
     // One pixel between the first and the last event.

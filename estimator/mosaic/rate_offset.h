@@ -26,7 +26,7 @@ namespace saccade {
 ///   max over b of  sum_x H(x; b)^2,   H the image of events in the panorama of without_rate(b)
 /// (Gallego, Rebecq and Scaramuzza, CVPR 2018), from coarse panoramas to the one of
 /// `pixels_per_radian`. `events` lie within the time of the orientations, at least one; a sample of
-/// `max_events` of them is used, evenly taken.
+/// `max_events` >= 1 of them is used, evenly taken, of half and a quarter as many in the coarser panoramas.
 [[nodiscard]] Eigen::Vector3d sharpest_rate_offset(std::span<const Event> events,
                                                    const PinholeCamera& camera,
                                                    const Trajectory& world_from_camera,

@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/check.h"
+
 namespace saccade {
 namespace {
 
 /// Waves that are shorter than an event run, some ten pixels, are told by every observation and need no coarse
 /// grid. Cells of 2 to 8 px take the same number of iterations within one or two, and the finer ones more time.
 constexpr int kCell_px = 4;
+/// The direct solution of more takes seconds: its time grows faster than their number.
+constexpr double kMostCells = 1e5;
 /// Of the mean diagonal: without levels the constant of the image is told by nothing.
 constexpr double kRegularisation = 1e-6;
 
@@ -42,13 +46,18 @@ Matrix4 levels(double weight, const Eigen::Vector2d& cell_px) {
 
 }  // namespace
 
-CoarseGrid::CoarseGrid(int width, int height, bool wraps)
-    : columns_(axis(width, wraps)), rows_(axis(height, false)) {}
+CoarseGrid::CoarseGrid(int width, int height, bool wraps) {
+  SACCADE_CHECK(width > 1 && height > 1);
+  int cell_px = kCell_px;
+  while (static_cast<double>(width) * height > kMostCells * cell_px * cell_px) ++cell_px;
+  columns_ = axis(width, cell_px, wraps);
+  rows_ = axis(height, cell_px, false);
+}
 
-CoarseGrid::Axis CoarseGrid::axis(int pixels, bool wraps) {
+CoarseGrid::Axis CoarseGrid::axis(int pixels, int cell_px, bool wraps) {
   Axis axis;
   const int length = wraps ? pixels : pixels - 1;
-  axis.cells = static_cast<std::size_t>((length + kCell_px - 1) / kCell_px);
+  axis.cells = static_cast<std::size_t>((length + cell_px - 1) / cell_px);
   axis.nodes = wraps ? axis.cells : axis.cells + 1;
   axis.cell_px = static_cast<double>(length) / static_cast<double>(axis.cells);
   for (int i = 0; i < pixels; ++i) {
@@ -88,7 +97,7 @@ void CoarseGrid::interpolate(const Eigen::VectorXd& nodes, std::vector<float>& i
   }
 }
 
-Eigen::VectorXd CoarseGrid::gathered(const std::vector<float>& image) const {
+Eigen::VectorXd CoarseGrid::restricted(const std::vector<float>& image) const {
   Eigen::VectorXd nodes = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(this->nodes()));
   Eigen::Map<Eigen::MatrixXd> values(nodes.data(), static_cast<Eigen::Index>(columns_.nodes),
                                      static_cast<Eigen::Index>(rows_.nodes));
@@ -138,7 +147,7 @@ CoarseImage::CoarseImage(const CoarseGrid& grid, std::span<const Stiffness> stif
 
 void CoarseImage::add(const std::vector<float>& residual, std::vector<float>& image) const {
   if (!is_usable_) return;
-  grid_.interpolate(factor_.solve(grid_.gathered(residual)), image);
+  grid_.interpolate(factor_.solve(grid_.restricted(residual)), image);
 }
 
 }  // namespace saccade

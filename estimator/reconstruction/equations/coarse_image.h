@@ -24,7 +24,7 @@ struct Stiffness {
   }
 };
 
-/// Cells of about four pixels a side, whose corners are the nodes of images that are bilinear in between:
+/// Cells of four pixels a side, of large images as many as give a hundred thousand nodes, whose corners are the nodes of images that are bilinear in between:
 /// smooth enough for what pixels tell by their slopes, and few enough for a direct solution.
 class CoarseGrid {
  public:
@@ -46,7 +46,7 @@ class CoarseGrid {
   /// Adds to each pixel what it has of the nodes' values.
   void interpolate(const Eigen::VectorXd& nodes, std::vector<float>& image) const;
   /// The transpose of it.
-  [[nodiscard]] Eigen::VectorXd gathered(const std::vector<float>& image) const;
+  [[nodiscard]] Eigen::VectorXd restricted(const std::vector<float>& image) const;
 
  private:
   /// Of the columns or of the rows.
@@ -56,7 +56,7 @@ class CoarseGrid {
     std::vector<std::size_t> cell;  ///< of each pixel
     std::vector<double> fraction;   ///< of the way from the node before it to the next
   };
-  [[nodiscard]] static Axis axis(int pixels, bool wraps);
+  [[nodiscard]] static Axis axis(int pixels, int cell_px, bool wraps);
   [[nodiscard]] std::size_t node_after(const Axis& axis, std::size_t cell) const {
     return cell + 1 == axis.nodes ? 0 : cell + 1;
   }
@@ -64,15 +64,15 @@ class CoarseGrid {
   Axis columns_, rows_;
 };
 
-/// The coarse part of a preconditioner: the image of a coarse grid that minimises what its slopes and levels
-/// cost, less its product with a residual. Finite elements, solved directly.
+/// The coarse-grid correction of a preconditioner: the image of a coarse grid that minimises half of what its slopes and
+/// levels cost, less its product with a residual. Finite elements, solved directly.
 class CoarseImage {
  public:
   /// `stiffness` of every cell of the grid, which outlives this; `level_weight` of a pixel's square.
   CoarseImage(const CoarseGrid& grid, std::span<const Stiffness> stiffness,
               double level_weight = 0);
 
-  /// Adds the solution of a residual to an image; nothing where the costs are not finite.
+  /// Adds the solution of a residual to an image; nothing where the costs are not finite or leave it undetermined.
   void add(const std::vector<float>& residual, std::vector<float>& image) const;
 
  private:

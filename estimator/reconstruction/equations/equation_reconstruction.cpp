@@ -17,7 +17,16 @@ namespace {
 
 /// Bands of the sensor's rows, whose event runs threads work on by themselves. Their number decides in which order
 /// sums are taken, so it does not depend on the number of threads.
-constexpr std::size_t kBands = 8;
+constexpr std::size_t kMostBands = 8;
+/// Each band has sums of its own over the image, a hundred bytes a pixel: in all 0.3 GB.
+constexpr std::size_t kMostPixelsOfBands = 3'000'000;
+
+std::size_t bands_for(const ReferenceGrid& grid) {
+  const auto pixels =
+      static_cast<std::size_t>(grid.width()) * static_cast<std::size_t>(grid.height());
+  return std::clamp<std::size_t>(kMostPixelsOfBands / pixels, 1, kMostBands);
+}
+
 /// Rounds of reweighting: the first with quadratic costs, the second with robust ones.
 constexpr int kRounds = 2;
 /// Conjugate gradient iterations per round, at most.
@@ -204,27 +213,27 @@ Reconstruction EquationReconstruction::solve(ObservationSource& source,
   // The observations take about as long as the rest.
   constexpr double kObservationsFraction = 0.5;
   double sort_s = 0, assembly_s = 0, solve_s = 0;
-  std::vector<EventRuns> bands(kBands, EventRuns(grid, source.kinds()));
+  std::vector<EventRuns> bands(bands_for(grid), EventRuns(grid, source.kinds()));
   const double observations_s = source.observe(
-      events, world_from_camera, kBands,
+      events, world_from_camera, bands.size(),
       [&](std::size_t band, std::span<const IntensityObservation> part) { bands[band].add(part); },
       [&](double fraction) {
         if (progress) progress(kObservationsFraction * fraction);
       });
   {
     const ScopedTimer clock(sort_s);
-    parallel_for(kBands, [&](std::size_t band) {
+    parallel_for(bands.size(), [&](std::size_t band) {
       bands[band].sort_by_run(static_cast<float>(options_.merge_radius_px));
     });
   }
   ImageF image;
-  IntensitySystem system(grid.width(), grid.height(), grid.wraps(), kBands);
+  IntensitySystem system(grid.width(), grid.height(), grid.wraps(), bands.size());
   system.set_level_weight(1 / (kLevelSigma * kLevelSigma));
   for (int round = 0; round < kRounds; ++round) {
     {
       const ScopedTimer clock(assembly_s);
       system.clear();
-      parallel_for(kBands, [&](std::size_t band) {
+      parallel_for(bands.size(), [&](std::size_t band) {
         add_observations(system, band, grid, bands[band], image,
                          static_cast<float>(options_.bound_sigma));
       });

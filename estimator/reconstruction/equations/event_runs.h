@@ -16,7 +16,7 @@ namespace saccade {
 class EventRuns {
  public:
   /// `grid`: the pixels that the observations are of. Both outlive this; kinds are
-  /// complete after plan() of their source.
+  /// complete before the first observation.
   EventRuns(const ReferenceGrid& grid, std::span<const ObservationKind> kinds);
 
   /// More observations, in order of time. Runs begin in the order of their numbers.

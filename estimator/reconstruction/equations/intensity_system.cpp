@@ -77,8 +77,15 @@ class Preconditioner {
   CoarseImage coarse_;
 };
 
-/// Weights of a run's observations as whole steps, so that what is stored of them in steps (Entry) is what they are:
-/// the factors of a run then sum to one exactly, and the constant of the image costs nothing.
+/// Four weights in whole steps, and their sum.
+struct CornerSteps {
+  Corners corners;
+  float sum;
+};
+
+/// The weights of an observation's pixels as whole steps of its run, of which one is 1 / 65535 of the largest weight: what is
+/// stored of an observation (Entry) is what it counts for everywhere. So the factors of a run sum to one exactly, and the
+/// constant of the image costs nothing.
 class WeightSteps {
  public:
   explicit WeightSteps(std::span<const GridObservation> observations) {
@@ -87,8 +94,16 @@ class WeightSteps {
     weight_ = largest / kMost;
     per_weight_ = largest > 0 ? kMost / largest : 0;
   }
-  [[nodiscard]] float of(const GridObservation& o) const {
-    return std::floor(o.weight * per_weight_ + 0.5F);
+  /// At least one for the nearest pixel where the observation has a weight.
+  [[nodiscard]] CornerSteps of(const GridObservation& o) const {
+    using Integers = std::int32_t __attribute__((vector_size(4 * sizeof(std::int32_t))));
+    constexpr float kLeast = 4;
+    const float steps = o.weight > 0 ? std::max(o.weight * per_weight_, kLeast) : 0;
+    Corners corners;
+    std::memcpy(&corners, o.point.weight.data(), sizeof corners);
+    corners =
+        __builtin_convertvector(__builtin_convertvector(steps * corners + 0.5F, Integers), Corners);
+    return {corners, corners[0] + corners[1] + (corners[2] + corners[3])};
   }
   /// Of one step.
   [[nodiscard]] float weight() const { return weight_; }
@@ -102,13 +117,13 @@ class WeightSteps {
 struct RunMoments {
   double steps = 0;  ///< sum of their weights
   float log_intensity = 0;
-  float xx = 0, xy = 0, yy = 0;  ///< covariance of the places [px^2]
+  float xx = 0, xy = 0, yy = 0;  ///< covariance of the reprojections [px^2]
 
   RunMoments(std::span<const GridObservation> observations, const WeightSteps& weights) {
     const GridObservation& head = observations.front();
     double l = 0, x = 0, y = 0, x2 = 0, y2 = 0, x_y = 0;
     for (const GridObservation& o : observations) {
-      const auto w = static_cast<double>(weights.of(o));
+      const auto w = static_cast<double>(weights.of(o).sum);
       const auto dx = static_cast<double>(o.x - head.x), dy = static_cast<double>(o.y - head.y);
       steps += w;
       l += w * static_cast<double>(o.log_intensity - head.log_intensity);
@@ -172,24 +187,17 @@ void IntensitySystem::add_run(std::size_t part, std::span<const GridObservation>
   if (own.entries.empty()) own.first = rows_.size();
   std::uint32_t count = 0;
   for (const GridObservation& o : observations) {
-    const float steps = weights.of(o);
+    const auto [f, steps] = weights.of(o);
     if (steps == 0) continue;
     Entry& entry = own.entries.emplace_back();
     entry.index = unrolled(o.point.index[0]);
-    // What the first three are rounded down by goes to the last: a ten-thousandth of a pixel.
-    std::array<float, 4> f{};
-    f[3] = steps;
-    for (std::size_t k = 0; k < 3; ++k) {
-      f[k] = std::floor(steps * o.point.weight[k]);
-      f[3] -= f[k];
-    }
     for (std::size_t k = 0; k < 4; ++k) entry.steps[k] = static_cast<std::uint16_t>(f[k]);
     const Lanes row = {f[0], f[1], f[2], f[3], steps * (o.log_intensity - moments.log_intensity)};
     const auto cell = static_cast<std::size_t>(entry.index);
     own.cells[cell] += products(weights.weight() / steps, row);
     own.first = std::min(own.first, cell);
     own.end = std::max(own.end, cell + 1);
-    // The run's observations, taken together, know the slope along itself by the covariance of their places.
+    // The run's observations, taken together, know the slope along itself by their covariance.
     const float weight = weights.weight() * steps;
     own.stiffness[coarse_cell_[cell]] +=
         {weight * moments.xx, weight * moments.xy, weight * moments.yy};
@@ -341,7 +349,9 @@ GridSolution IntensitySystem::solve(int iterations, double tolerance, const Imag
   double rz = dot(r, z);
   while (solution.iterations < iterations && rz > tolerance * tolerance * full) {
     multiply(stencil, p, q, sums);
-    const auto alpha = static_cast<float>(rz / dot(p, q));
+    const double curvature = dot(p, q);
+    if (!(curvature > 0)) break;  // as precise as single precision allows
+    const auto alpha = static_cast<float>(rz / curvature);
     for (std::size_t i = 0; i < n; ++i) {
       x[i] += alpha * p[i];
       r[i] -= alpha * q[i];

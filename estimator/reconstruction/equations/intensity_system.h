@@ -28,7 +28,7 @@ struct GridObservation {
 };
 
 struct GridSolution {
-  ImageF image;         ///< up to a constant
+  ImageF image;         ///< up to a constant where levels have no weight
   int iterations = 0;   ///< of conjugate gradients
   double residual = 0;  ///< |r| / |b| in the preconditioner's norm
 };
@@ -43,7 +43,7 @@ using Corners = float __attribute__((vector_size(4 * sizeof(float))));
 /// the sum of its weights, the normal matrix is that of the pixels (a stencil) minus
 /// sum_r n_r m_r m_r^T. Solved by conjugate gradients. Of waves shorter than the runs every observation tells
 /// the value, of longer ones a run tells the slope along itself only, as a diffusion whose tensor is the
-/// covariance of its observations' places. The preconditioner is the sum of the inverses of both: of the diagonal,
+/// covariance of its reprojections. The preconditioner is the sum of the inverses of both: of the diagonal,
 /// and of that diffusion (with the smoothness) on a coarse grid (coarse_image.h). An image
 /// that wraps is unrolled by repeating its first column behind the last one.
 class IntensitySystem {
@@ -52,7 +52,7 @@ class IntensitySystem {
   /// multiply by themselves; their sums are added up in the order of the parts.
   IntensitySystem(int width, int height, bool wraps = false, std::size_t parts = 1);
 
-  /// Removes all terms, but keeps the memory.
+  /// Removes all terms but the level weight, and keeps the memory.
   void clear();
 
   /// Allocates memory for so many observations of a part.
@@ -70,7 +70,7 @@ class IntensitySystem {
   /// Adds w (I(j) - I(i))^2 of two neighbours.
   void add_smoothness_term(int i, int j, float weight);
 
-  /// Ends when the relative residual is below `tolerance`. `start`: first guess; empty: 0.
+  /// Ends when the relative residual is below `tolerance`, which single precision reaches down to about 1e-4. `start`: first guess; empty: 0.
   [[nodiscard]] GridSolution solve(int iterations, double tolerance,
                                    const ImageF& start = {}) const;
 

@@ -5,14 +5,17 @@
 #include <numeric>
 #include <utility>
 
+#include "core/check.h"
 #include "core/process/parallel.h"
 #include "core/stopwatch.h"
 
 namespace saccade {
 namespace {
 
-constexpr std::size_t kBatch = 65536;  ///< events per call of observe()
-constexpr int kTile_px = 16;           ///< in which no-event constraints have one stride
+constexpr std::size_t kBatch = 65536;  ///< events at a time
+/// Steps at a time, and pictures of surfaces that they hold: some 10 MB.
+constexpr std::size_t kMostSteps = 256, kMostSurfaces = 16;
+constexpr int kTile_px = 16;  ///< in which no-event constraints have one stride
 constexpr TimeNs kSimultaneousNs = 2000;
 
 /// A no-event constraint needs this fraction of no_event_spacing_px of motion, squared, since the
@@ -141,40 +144,36 @@ void ReprojectedObservations<Path>::divide(std::span<const Event> events, std::s
   }
 }
 
-/// The steps of the next part are found beside the bands of this one: the surfaces are rendered one after the other.
+/// The steps of the next batch are found beside the bands of this one: the surfaces are rendered one after the other.
 template <class Path>
 double ReprojectedObservations<Path>::observe(std::span<const Event> events,
                                               const Trajectory& world_from_camera,
                                               std::size_t bands, const ObservationSink& use,
                                               const std::function<void(double)>& done) {
-  const auto part_from = [&](std::size_t begin) {
-    return begin < events.size() ? events.subspan(begin, std::min(kBatch, events.size() - begin))
-                                 : std::span<const Event>();
-  };
+  SACCADE_CHECK(bands > 0 && !newest_);
   double seconds = 0;
-  std::vector<Step> steps;
+  Batch batch;
   {
     const ScopedTimer clock(seconds);
     plan(events, bands);
-    steps = steps_over(part_from(0), world_from_camera);
+    batch = next_batch(events, world_from_camera);
   }
-  for (std::size_t end = 0; end < events.size();) {
+  for (std::size_t end = 0; !batch.steps.empty();) {
     {
       const ScopedTimer clock(seconds);
-      const std::span<const Event> part = part_from(end);
-      end += part.size();
+      end += batch.events.size();
       for (Band& band : bands_) band.events.clear();
-      for (const Event& event : part) bands_[band_of_row_[event.y]].events.push_back(event);
-      std::vector<Step> next;
+      for (const Event& event : batch.events) bands_[band_of_row_[event.y]].events.push_back(event);
+      Batch next;
       parallel_for(bands_.size() + 1, [&](std::size_t i) {
         if (i == 0) {
-          next = steps_over(part_from(end), world_from_camera);
+          next = next_batch(events.subspan(end), world_from_camera);
         } else {
-          observe_band(steps, bands_[i - 1]);
+          observe_band(batch.steps, bands_[i - 1]);
           use(i - 1, bands_[i - 1].observations);
         }
       });
-      steps = std::move(next);
+      batch = std::move(next);
     }
     done(static_cast<double>(end) / static_cast<double>(events.size()));
   }
@@ -182,22 +181,28 @@ double ReprojectedObservations<Path>::observe(std::span<const Event> events,
 }
 
 template <class Path>
-auto ReprojectedObservations<Path>::steps_over(std::span<const Event> events,
-                                               const Trajectory& world_from_camera)
-    -> std::vector<Step> {
-  std::vector<Step> steps;
-  if (events.empty()) return steps;
-  if (!newest_) steps.push_back(first_step(world_from_camera, events.front().t_ns));
-  const TimeNs last_ns = events.back().t_ns;
+auto ReprojectedObservations<Path>::next_batch(std::span<const Event> events,
+                                               const Trajectory& world_from_camera) -> Batch {
+  Batch batch;
+  if (events.empty()) return batch;
+  batch.events = events.first(std::min(kBatch, events.size()));
+  if (!newest_) batch.steps.push_back(first_step(world_from_camera, events.front().t_ns));
+  const TimeNs last_ns = batch.events.back().t_ns;
+  std::size_t surfaces = 0;
   do {
     Step step;
     step.begin = *newest_;
     step.end = path_.next(step.begin, world_from_camera, last_ns);
+    if (!step.end.has_surfaces_of(step.begin)) ++surfaces;
     newest_ = step.end;
     if (options_.no_event_constraints) time_constraints(step);
-    steps.push_back(std::move(step));
-  } while (newest_->t_ns < last_ns);
-  return steps;
+    batch.steps.push_back(std::move(step));
+  } while (newest_->t_ns < last_ns && batch.steps.size() < kMostSteps && surfaces < kMostSurfaces);
+  const TimeNs end_ns = newest_->t_ns;
+  const auto later = std::partition_point(batch.events.begin(), batch.events.end(),
+                                          [&](const Event& e) { return e.t_ns <= end_ns; });
+  batch.events = batch.events.first(static_cast<std::size_t>(later - batch.events.begin()));
+  return batch;
 }
 
 template <class Path>

@@ -72,7 +72,7 @@ struct ObservationOptions {
 /// `has_surfaces`: the observations are of a view with depth, not of a panorama.
 void describe(config::Fields& fields, ObservationOptions& options, bool has_surfaces);
 
-/// Receives the observations of a band of the sensor's rows: a part of them, in order of time. Their runs are
+/// Receives the observations of a band of the sensor's rows: a batch of them, in order of time. Their runs are
 /// those of the band, which count from 0. Several threads call it, each for bands of its own.
 using ObservationSink =
     std::function<void(std::size_t band, std::span<const IntensityObservation>)>;
@@ -86,8 +86,8 @@ class ObservationSource {
 
   [[nodiscard]] virtual std::span<const ObservationKind> kinds() const = 0;
 
-  /// The observations of all events of a window, which are in order of time, part by part. The sensor is divided into
-  /// `bands` of rows with about as much work each; the bands of a part are observed in parallel. After each part calls
+  /// The observations of all events of a window, which are in order of time, batch by batch. The sensor is divided into
+  /// `bands` > 0 of rows with about as much work each; the bands of a batch are observed in parallel. After each batch calls
   /// `done` with the fraction of the events up to its end. Returns the seconds it took with `use`, without
   /// `done`. Before the first observation it thins no-event constraints where many events lie
   /// (dense_events_per_px), weighs what pixels miss while they are blind, and finds the bias of their changes, which
@@ -157,7 +157,12 @@ class ReprojectedObservations : public ObservationSource {
     bool is_first = false;  ///< there is only `end`
     std::vector<ConstraintTime> constraints;
   };
-  /// What is known of some rows, with the events of one part.
+  /// The steps over some events, as many as take little memory, however long a time without events lasts.
+  struct Batch {
+    std::vector<Step> steps;
+    std::span<const Event> events;
+  };
+  /// What is known of some rows, with the events of one batch.
   struct Band {
     PixelRows rows;
     std::uint32_t runs = 0;
@@ -168,8 +173,9 @@ class ReprojectedObservations : public ObservationSource {
   void plan(std::span<const Event> events, std::size_t bands);
   void thin_constraints(std::span<const Event> events);
   void divide(std::span<const Event> events, std::size_t bands);
-  [[nodiscard]] std::vector<Step> steps_over(std::span<const Event> events,
-                                             const Trajectory& world_from_camera);
+  /// The one that begins with `events`, which are all that are left; without steps where none is.
+  [[nodiscard]] Batch next_batch(std::span<const Event> events,
+                                 const Trajectory& world_from_camera);
   [[nodiscard]] Step first_step(const Trajectory& world_from_camera, TimeNs t_ns);
   void time_constraints(Step& step);
   void observe_band(std::span<const Step> steps, Band& band);

@@ -23,6 +23,8 @@ class PanoramaReprojection {
     CameraPose world_from_camera;
 
     [[nodiscard]] const CameraPose& pose() const { return world_from_camera; }
+    /// A panorama needs none.
+    [[nodiscard]] bool has_surfaces_of(const Instant&) const { return true; }
   };
 
   [[nodiscard]] Instant first(const Trajectory& world_from_camera, TimeNs t_ns) const {

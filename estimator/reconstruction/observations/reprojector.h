@@ -108,8 +108,8 @@ class Reprojector {
   /// Number of renderings.
   [[nodiscard]] int draws() const { return draws_; }
 
-  /// Image motion since an earlier pose [px]; infinity where a point was behind the camera. After
-  /// prepare().
+  /// Image motion since an earlier pose [px], of points of the surfaces that prepare() returned last; infinity where
+  /// one was behind the camera. For the thread that calls prepare(), as motion().
   [[nodiscard]] double moved_px(const CameraPose& reference_from_camera,
                                 const CameraPose& earlier_from_reference) const;
 

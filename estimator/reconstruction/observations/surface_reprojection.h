@@ -33,6 +33,9 @@ class SurfaceReprojection {
     int number = 0;  ///< from the first on
 
     [[nodiscard]] const CameraPose& pose() const { return reference_from_camera; }
+    [[nodiscard]] bool has_surfaces_of(const Instant& other) const {
+      return surfaces == other.surfaces;
+    }
   };
 
   /// The instants are found by one thread, while others use those that it found before.
@@ -69,11 +72,11 @@ class SurfaceReprojection {
     if (!(field.inverse_depth[i] > 0)) return std::nullopt;
     return Reprojection{field.x[i], field.y[i], field.inverse_depth[i]};
   }
-  /// Image motion from an earlier pose to the newest instant, the maximum over a few points [px];
-  /// infinity where one was behind the camera.
-  [[nodiscard]] double moved_px(const Instant& newest,
+  /// Image motion from an earlier pose to an instant, the maximum over a few points of the surfaces that were rendered
+  /// last [px]; infinity where one was behind the camera. For the thread that finds instants.
+  [[nodiscard]] double moved_px(const Instant& instant,
                                 const CameraPose& earlier_from_reference) const {
-    return projector_.moved_px(newest.reference_from_camera, earlier_from_reference);
+    return projector_.moved_px(instant.reference_from_camera, earlier_from_reference);
   }
 
  private:

@@ -48,7 +48,14 @@ TEST(CoarseGrid, InterpolatesLinearImagesExactly) {
   }
 }
 
-TEST(CoarseGrid, GathersByTheTransposeOfInterpolating) {
+TEST(CoarseGrid, HasNoMoreCellsThanAreSolvedSoon) {
+  EXPECT_EQ(CoarseGrid(241, 181, false).cells(), 60U * 45U);
+  const CoarseGrid sphere(4000, 2000, true);
+  EXPECT_LE(sphere.cells(), 101'000U);
+  EXPECT_GT(sphere.cells(), 90'000U);
+}
+
+TEST(CoarseGrid, RestrictsByTheTransposeOfInterpolating) {
   for (const bool wraps : {false, true}) {
     const CoarseGrid grid(37, 22, wraps);
     const std::vector<float> image = random_image(37 * 22, 1);
@@ -58,7 +65,7 @@ TEST(CoarseGrid, GathersByTheTransposeOfInterpolating) {
             .cast<double>();
     std::vector<float> interpolated(image.size(), 0);
     grid.interpolate(nodes, interpolated);
-    EXPECT_NEAR(grid.gathered(image).dot(nodes), dot(image, interpolated), 1e-3);
+    EXPECT_NEAR(grid.restricted(image).dot(nodes), dot(image, interpolated), 1e-3);
   }
 }
 
@@ -72,7 +79,7 @@ TEST(CoarseImage, SlopesAsItsStiffnessSays) {
   const CoarseImage coarse(grid, stiffness);
   std::vector<float> pull(kWidth * kHeight, 0), image(pull.size(), 0);
   for (std::size_t y = 0; y < kHeight; ++y) {
-    // As the nodes of the sides gather it, evenly.
+    // So that all nodes of a side get the same.
     const float share = y == 0 || y + 1 == kHeight ? 0.5F : 1;
     pull[y * kWidth] = -share;
     pull[y * kWidth + kWidth - 1] = share;

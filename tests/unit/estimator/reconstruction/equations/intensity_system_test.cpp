@@ -75,11 +75,29 @@ TEST(IntensitySystem, EqualsTheDenseProblemWithOffsets) {
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x + 1 < kWidth; ++x)
       system.add_smoothness_term(y * kWidth + x + 1, y * kWidth + x, 0.1F);
-  const GridSolution solution = system.solve(500, 1e-6);
+  const GridSolution solution = system.solve(500, 1e-4);
+  EXPECT_LE(solution.iterations, 20);
   const Eigen::VectorXd found = without_mean(solution.image), expected = dense_solution(runs);
   for (int i = 0; i < kWidth * kHeight; ++i) EXPECT_NEAR(found[i], expected[i], 2e-3) << i;
   // Started from its solution it has converged.
-  EXPECT_LE(system.solve(500, 1e-4, solution.image).iterations, 3);
+  EXPECT_LE(system.solve(500, 1e-3, solution.image).iterations, 3);
+}
+
+/// Observations that hardly count beside others of their run still lie where they do.
+TEST(IntensitySystem, HoldsWeightsOfFourOrdersOfMagnitude) {
+  const ReferenceGrid grid(ImageF(kWidth, kHeight, 1.0F));
+  auto runs = random_tracks(grid);
+  for (std::size_t t = 0; t < runs.size(); ++t)
+    for (std::size_t k = 1; k < runs[t].size(); ++k)
+      runs[t][k].weight *= k % 2 == t % 2 ? 1 : 1e-4F;
+  IntensitySystem system(kWidth, kHeight);
+  for (const auto& run : runs) system.add_run(0, run);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x + 1 < kWidth; ++x)
+      system.add_smoothness_term(y * kWidth + x + 1, y * kWidth + x, 0.1F);
+  const Eigen::VectorXd found = without_mean(system.solve(1000, 1e-4).image);
+  const Eigen::VectorXd expected = dense_solution(runs);
+  EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 0.02);
 }
 
 /// Paths of pixels over a view of which one half moves a hundred times as often as the other.
@@ -142,7 +160,7 @@ TEST(IntensitySystem, LevelsOfPartsThatNothingComparesStayAtTheMean) {
     ImageF far_apart(kWidth, kHeight);
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x) far_apart(x, y) = x < kWidth / 2 ? -3.0F : 2.0F;
-    const ImageF image = system.solve(500, 1e-6, far_apart).image;
+    const ImageF image = system.solve(500, 1e-4, far_apart).image;
     Eigen::Vector2d sums(0, 0);
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x)
@@ -179,7 +197,7 @@ TEST(IntensitySystem, HasNoSeamWhereItWraps) {
         if (y + 1 < grid.height())
           system.add_smoothness_term(y * kWidth + x, grid.below(x, y), 0.2F);
       }
-    return without_mean(system.solve(400, 1e-7).image);
+    return without_mean(system.solve(400, 1e-4).image);
   };
   const Eigen::VectorXd plain = solve(0), shifted = solve(5), turned = solve(kWidth);
   for (int y = 0; y < grid.height(); ++y)

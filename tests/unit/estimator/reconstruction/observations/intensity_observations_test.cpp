@@ -4,13 +4,17 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <set>
 #include <utility>
 #include <vector>
 
 #include "core/depth_mesh.h"
+#include "core/random.h"
+#include "core/rigid3.h"
 #include "tests/support/intensity_observations.h"
 #include "tests/support/planar_world.h"
 
@@ -130,6 +134,64 @@ TEST(SurfaceObservations, LeakingPixelsBeginAboveTheirReferences) {
     EXPECT_NEAR(expected[0], removes ? 0.2 * 0.4 * 0.2 : 0.4 * 0.2, 0.002);
     EXPECT_NEAR(expected[1], removes ? -1.8 * 0.4 * 0.2 : -0.4 * 0.2, 0.002);
   }
+}
+
+/// However long there is no event: the motion meanwhile is not held in memory, but constrained all the same.
+TEST(SurfaceObservations, FewEventsInALongTimeConstrainAllOfIt) {
+  const PinholeCamera camera{24, 18, 20, 20, 11.5, 8.5, {}};
+  std::size_t pictures = 0;
+  DepthScene scene;
+  scene.draw = [&](const Rigid3&, const PinholeCamera&, ImageF& inverse) {
+    inverse.fill(1);
+    ++pictures;
+  };
+  const ImageF reference(24, 18, 1);
+  // Swings of 6 px to either side, 24 px in 0.5 s.
+  std::vector<StampedPose> poses;
+  for (int i = 0; i <= 2000; ++i) {
+    const double t_s = i * 0.01;
+    poses.push_back(
+        {t_s, Rigid3(Eigen::Quaterniond::Identity(),
+                     Eigen::Vector3d(0.3 * std::sin(4 * std::numbers::pi * t_s), 0, 0))});
+  }
+  const Trajectory motion(std::move(poses));
+  const Events events{{0, 12, 9, 1}, {20'000'000'000, 12, 9, 1}};
+  ObservationOptions options;
+  options.no_event_spacing_px = 1;
+  options.reprojection.redraw_motion_px = 2;
+  SurfaceObservations source(camera, scene, Rigid3(), reference, {0.2, 0.2}, options);
+  const auto observations = testing::observations_of(source, events, motion, 3);
+  EXPECT_GT(pictures, 300U);  // of many batches
+  // 960 px of motion, 17 of 24 columns in the mean.
+  EXPECT_NEAR(static_cast<double>(observations.size()), 960.0 * 18 * 20, 960.0 * 18 * 4);
+}
+
+/// The paths of a panorama's pixels go on across its seam, in each band by itself.
+TEST(PanoramaObservations, AreThoseOfTheWholeSensorInBands) {
+  const PinholeCamera camera{40, 30, 40, 40, 19.5, 14.5, {}};
+  const Panorama panorama{256, 0, 44, 256, 40};
+  std::vector<StampedPose> poses;
+  for (int i = 0; i <= 100; ++i)
+    poses.push_back({i * 1e-2, Rigid3(so3_exp({0, 0.07 * i, 0}), Eigen::Vector3d::Zero())});
+  const Trajectory motion(std::move(poses));
+  const Random random(5);
+  Events events;
+  for (std::uint64_t i = 0; i < 100'000; ++i)
+    events.push_back({static_cast<TimeNs>(i) * 10'000,
+                      static_cast<std::uint16_t>(random.below(40, 1, i)),
+                      static_cast<std::uint16_t>(random.below(30, 2, i)),
+                      static_cast<std::int8_t>(random.below(2, 3, i) == 0 ? -1 : 1)});
+  const auto sorted = [&](std::size_t bands) {
+    PanoramaObservations source(camera, panorama, {0.2, 0.2}, {});
+    std::vector<std::array<float, 4>> all;
+    for (const IntensityObservation& o : testing::observations_of(source, events, motion, bands))
+      all.push_back({o.x, o.y, o.log_intensity, static_cast<float>(o.kind())});
+    std::sort(all.begin(), all.end());
+    return all;
+  };
+  const auto whole = sorted(1);
+  EXPECT_GT(whole.size(), events.size() / 2);
+  EXPECT_EQ(sorted(6), whole);
 }
 
 /// Bands of rows see what the whole sensor sees, pixel by pixel.
