@@ -89,9 +89,9 @@ Eigen::Vector3d maximise(const PanoramaContrast& contrast, Eigen::Vector3d rate,
     std::array<double, 6> values{};
     parallel_for(values.size(), [&](std::size_t k) { values[k] = contrast(rate + moves[k]); });
     Eigen::Vector3d move;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double up = values[static_cast<std::size_t>(2 * axis)];
-      const double down = values[static_cast<std::size_t>(2 * axis + 1)];
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      const auto k = 2 * static_cast<std::size_t>(axis);
+      const double up = values[k], down = values[k + 1];
       const double curvature = up + down - 2 * here;
       const double top = curvature < 0 ? (down - up) / (2 * curvature) : (up > down ? 2.0 : -2.0);
       const double to = rate[axis] + step * std::clamp(top, -2.0, 2.0);
@@ -117,12 +117,14 @@ Eigen::Vector3d maximise(const PanoramaContrast& contrast, Eigen::Vector3d rate,
 
 std::vector<Eigen::Matrix3d> orientations_of(const Trajectory& world_from_camera,
                                              std::span<const Event> events) {
-  constexpr double kIntervalS = 1e-3;
+  constexpr TimeNs kIntervalNs = 1'000'000;
   std::vector<Eigen::Matrix3d> orientations;
-  const double end_s = seconds_from_ns(events.back().t_ns);
-  for (double t_s = seconds_from_ns(events.front().t_ns); t_s < end_s; t_s += kIntervalS)
-    orientations.push_back(world_from_camera.at_clamped(t_s).rotation_matrix());
-  orientations.push_back(world_from_camera.at_clamped(end_s).rotation_matrix());
+  const TimeNs end_ns = events.back().t_ns;
+  const auto add = [&](TimeNs t_ns) {
+    orientations.push_back(world_from_camera.at_clamped(seconds_from_ns(t_ns)).rotation_matrix());
+  };
+  for (TimeNs t_ns = events.front().t_ns; t_ns < end_ns; t_ns += kIntervalNs) add(t_ns);
+  add(end_ns);
   return orientations;
 }
 

@@ -24,8 +24,9 @@ struct Stiffness {
   }
 };
 
-/// Cells of four pixels a side, of large images as many as give a hundred thousand nodes, whose corners are the nodes of images that are bilinear in between:
-/// smooth enough for what pixels tell by their slopes, and few enough for a direct solution.
+/// Cells of four pixels a side, larger ones in images of more than 1.6 million pixels. Their corners are the nodes
+/// of images that are bilinear in between: smooth enough for what pixels tell by their slopes, and few enough for
+/// a direct solution.
 class CoarseGrid {
  public:
   /// `wraps`: the cells of the last column end at the nodes of the first one. At least two pixels a side.

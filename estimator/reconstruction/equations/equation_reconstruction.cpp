@@ -169,9 +169,10 @@ std::vector<GradientState> gradient_states(const ReferenceGrid& grid, const Imag
       states[i].pxy += part[i].pxy;
       states[i].pyy += part[i].pyy;
     }
+  std::size_t i = 0;
   for (int y = 0; y < image.height(); ++y)
     for (int x = 0; x < image.width(); ++x) {
-      GradientState& s = states[static_cast<std::size_t>(y * image.width() + x)];
+      GradientState& s = states[i++];
       const float determinant = s.pxx * s.pyy - s.pxy * s.pxy;
       s = {0, 0, s.pyy / determinant, -s.pxy / determinant, s.pxx / determinant};
       const int left = std::max(x - 1, 0), right = std::min(x + 1, image.width() - 1);

@@ -240,9 +240,10 @@ void ReprojectedObservations<Path>::time_constraints(Step& step) {
     return;
   }
   const double apart = spacing_px / std::min(step_px, kMost_px);
-  double fraction =
+  const double first =
       before_px < spacing_px ? (spacing_px - before_px) / (after_px - before_px) : 0.0;
-  for (; fraction <= 1; fraction += apart) add(fraction);
+  const int count = 1 + static_cast<int>((1 - first) / apart);
+  for (int i = 0; i < count; ++i) add(first + i * apart);
 }
 
 template <class Path>
@@ -311,7 +312,7 @@ void ReprojectedObservations<Path>::add_event(const Event& event, const Reprojec
   pixel.y = pixel.observed_y = reprojection.y;
   pixel.t_ns = event.t_ns;
   ++pixel.events;
-  pixel.last_polarity = event.polarity;
+  pixel.last_polarity = event.polarity > 0 ? 1 : -1;
 }
 
 template <class Path>

@@ -279,7 +279,7 @@ void Reprojector::follow_chunk(std::size_t first, std::size_t count,
   std::array<Plane, kChunk> plane;
   std::array<float, kChunk> x, y, inverse, den, depth, is_in, known, rendered;
   for (std::size_t i = 0; i < count; ++i)
-    at[i] = static_cast<int>(from_y[i] + 0.5F) * width + static_cast<int>(from_x[i] + 0.5F);
+    at[i] = nearest_pixel(from_y[i]) * width + nearest_pixel(from_x[i]);
   for (std::size_t i = 0; i < count; ++i) plane[i] = planes_.data()[at[i]];
   for (std::size_t i = 0; i < count; ++i) {
     const float nx = plane[i].normal[0], ny = plane[i].normal[1], nz = plane[i].normal[2];
@@ -299,7 +299,7 @@ void Reprojector::follow_chunk(std::size_t first, std::size_t count,
                           mask(y[i] <= most_y);
     x[i] = is_here > 0 ? x[i] : 0;
     y[i] = is_here > 0 ? y[i] : 0;
-    at[i] = static_cast<int>(y[i] + 0.5F) * width + static_cast<int>(x[i] + 0.5F);
+    at[i] = nearest_pixel(y[i]) * width + nearest_pixel(x[i]);
     const float qx = v00 * px + v01 * py + v02 * pz + wx * d;
     const float qy = v10 * px + v11 * py + v12 * pz + wy * d;
     const float qz = v20 * px + v21 * py + v22 * pz + wz * d;

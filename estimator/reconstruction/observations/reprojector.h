@@ -55,6 +55,12 @@ struct ReprojectionOptions {
   int discontinuity_margin_px = 0;
 };
 
+/// The pixel nearest to a coordinate >= 0, by a cast, which loops vectorise.
+[[nodiscard]] inline int nearest_pixel(float px) {
+  const float shifted = px + 0.5F;
+  return static_cast<int>(shifted);
+}
+
 /// Rows of a sensor's pixels, [begin, end).
 struct PixelRows {
   int begin = 0, end = 0;
@@ -164,8 +170,7 @@ class Reprojector {
     return is_inside(planes_, reprojection.x, reprojection.y);
   }
   [[nodiscard]] const Plane& plane_at(const Reprojection& reprojection) const {
-    return planes_(static_cast<int>(reprojection.x + 0.5F),
-                   static_cast<int>(reprojection.y + 0.5F));
+    return planes_(nearest_pixel(reprojection.x), nearest_pixel(reprojection.y));
   }
   [[nodiscard]] bool is_same_surface(float found, float expected) const {
     return std::abs(found - expected) <= static_cast<float>(kSameSurfaceRatio) * expected;

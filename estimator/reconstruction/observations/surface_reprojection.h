@@ -81,7 +81,8 @@ class SurfaceReprojection {
 
  private:
   [[nodiscard]] std::size_t index_of(int x, int y) const {
-    return static_cast<std::size_t>(y * width_ + x);
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+           static_cast<std::size_t>(x);
   }
   [[nodiscard]] const ReprojectionField& field_of(const Instant& instant) const {
     return fields_[static_cast<std::size_t>(instant.number % 2)];
