@@ -1,7 +1,9 @@
 #include "estimator/depth/rays/local_planes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include <Eigen/LU>
@@ -15,7 +17,9 @@ namespace {
 constexpr float kMaxSlope = 0.02F;    ///< relative change of inverse depth per pixel at the start
 constexpr float kOnPlane = 0.02F;     ///< relative distance of points that belong to a plane
 constexpr float kSlopePrior = 0.01F;  ///< sigma of the relative slope [1/px]
-constexpr int kIterations = 4;        ///< of reweighting; the weights have settled by then
+// Sum of weights from which on a plane is known better by its nearest points than by more of them.
+constexpr float kEnoughWeights = 20;
+constexpr int kIterations = 4;  ///< of reweighting; the weights have settled by then
 // surface_side(): a surface behind lies farther by kBehind, relatively, within kBehindRadiusRatio
 // radii, with kMinBehindPoints points or more, since one may be wrong.
 constexpr float kBehind = 0.05F;
@@ -80,10 +84,10 @@ const EdgePoint* LocalPlanes::nearest(float x_px, float y_px) const {
   return best;
 }
 
-void LocalPlanes::gather(const EdgePoint& start) {
+void LocalPlanes::gather(const EdgePoint& start, float radius_px) {
   const float model = static_cast<float>(options_.model_error) * start.inverse_depth;
   dx_.clear(), dy_.clear(), difference_.clear(), per_sigma_.clear();
-  for_near(start.x_px, start.y_px, static_cast<float>(options_.radius_px),
+  for_near(start.x_px, start.y_px, radius_px,
            [&](const EdgePoint& other, float dx, float dy, float squared) {
              const float difference = other.inverse_depth - start.inverse_depth;
              const float allowed =
@@ -139,7 +143,20 @@ LocalPlanes::Sums LocalPlanes::weighted_sums(const Eigen::Vector3f& plane, float
 }
 
 LocalPlane LocalPlanes::fit(const EdgePoint& start) {
-  gather(start);
+  return fit_within(static_cast<float>(options_.radius_px), start);
+}
+
+LocalPlane LocalPlanes::fit_widened(const EdgePoint& start) {
+  const LocalPlane plane = fit(start);
+  const auto widened_px = static_cast<float>(options_.widened_px);
+  if (plane.weights >= kEnoughWeights ||
+      std::isfinite(gap_within(widened_px, start.x_px, start.y_px, plane)))
+    return plane;
+  return fit_within(widened_px, start);
+}
+
+LocalPlane LocalPlanes::fit_within(float radius_px, const EdgePoint& start) {
+  gather(start, radius_px);
   LocalPlane result;
   result.inverse_depth = start.inverse_depth;
   result.sigma = start.sigma;
@@ -168,19 +185,29 @@ LocalPlane LocalPlanes::fit(const EdgePoint& start) {
   return result;
 }
 
+float LocalPlanes::weight_of(std::size_t neighbour, const LocalPlane& plane) const {
+  const float change = plane.inverse_depth - start_inverse_depth_;
+  const float residual = difference_[neighbour] - change - plane.slope.x() * dx_[neighbour] -
+                         plane.slope.y() * dy_[neighbour];
+  const float u = residual * per_sigma_[neighbour] / (kBiweightCutoff * plane.spread);
+  const float v = std::max(0.F, 1 - u * u);
+  return v * v;
+}
+
+bool LocalPlanes::surrounds_start(const LocalPlane& plane) const {
+  std::array<bool, 4> has_point{};
+  for (std::size_t k = 0; k < count_; ++k)
+    if (weight_of(k, plane) > 0) has_point[(dx_[k] > 0 ? 1U : 0U) + (dy_[k] > 0 ? 2U : 0U)] = true;
+  return std::ranges::all_of(has_point, std::identity());
+}
+
 LocalPlanes::Sides LocalPlanes::plane_sides(const LocalPlane& plane,
                                             const Eigen::Vector2f& normal) const {
-  const float change = plane.inverse_depth - start_inverse_depth_;
-  const float per_cut = 1 / (kBiweightCutoff * plane.spread);
   Sides sides;
   for (std::size_t k = 0; k < count_; ++k) {
     const float across = dx_[k] * normal.x() + dy_[k] * normal.y();
     if (std::abs(across) < kMinSideDistance_px) continue;
-    const float residual =
-        difference_[k] - change - plane.slope.x() * dx_[k] - plane.slope.y() * dy_[k];
-    const float u = residual * per_sigma_[k] * per_cut;
-    const float v = std::max(0.F, 1 - u * u);
-    (across > 0 ? sides.along : sides.against) += v * v;
+    (across > 0 ? sides.along : sides.against) += weight_of(k, plane);
   }
   return sides;
 }
@@ -216,18 +243,17 @@ int LocalPlanes::surface_side(const EdgePoint& start, const LocalPlane& plane) c
   return is_mostly(behind.against, behind.along) ? 1 : 0;
 }
 
-float LocalPlanes::gap_around(float x_px, float y_px, const LocalPlane& plane) const {
+float LocalPlanes::gap_within(float radius_px, float x_px, float y_px,
+                              const LocalPlane& plane) const {
   float nearest = std::numeric_limits<float>::infinity(), second = nearest;
   const float always = kOnPlane * plane.inverse_depth;
-  for_near(x_px, y_px, static_cast<float>(options_.radius_px),
-           [&](const EdgePoint& other, float dx, float dy, float) {
-             const float gap = std::abs(other.inverse_depth - plane.inverse_depth -
-                                        plane.slope.x() * dx - plane.slope.y() * dy);
-             if (gap < always + kBiweightCutoff * plane.spread * other.sigma || gap >= second)
-               return;
-             second = gap >= nearest ? gap : nearest;
-             nearest = std::min(nearest, gap);
-           });
+  for_near(x_px, y_px, radius_px, [&](const EdgePoint& other, float dx, float dy, float) {
+    const float gap = std::abs(other.inverse_depth - plane.inverse_depth - plane.slope.x() * dx -
+                               plane.slope.y() * dy);
+    if (gap < always + kBiweightCutoff * plane.spread * other.sigma || gap >= second) return;
+    second = gap >= nearest ? gap : nearest;
+    nearest = std::min(nearest, gap);
+  });
   return second;
 }
 

@@ -11,6 +11,8 @@ namespace saccade {
 
 struct PlaneOptions {
   double radius_px = 7;
+  /// Of the wider neighbourhood of fit_widened().
+  double widened_px = 10;
   /// Relative deviation of a surface from its tangent plane, added to the sigmas of the points.
   double model_error = 0.001;
 };
@@ -35,6 +37,13 @@ class LocalPlanes {
   /// Starts from the inverse depth of `start`, whose sigma bounds the points that may belong to the
   /// plane. Uses the points within the radius, one at `start` itself included. Not thread-safe.
   [[nodiscard]] LocalPlane fit(const EdgePoint& start);
+  /// The same through the points within twice the area where few are within the radius, and no other
+  /// surface is near: what few points have in common is the larger error there.
+  [[nodiscard]] LocalPlane fit_widened(const EdgePoint& start);
+
+  /// Whether points of the last fit()'s plane lie in each quadrant around its start: its depth there is
+  /// interpolated then.
+  [[nodiscard]] bool surrounds_start(const LocalPlane& plane) const;
 
   /// The side of an edge through the start of the last fit() on which its surface lies: 1 that of the
   /// edge's normal, -1 the other; 0 where it continues on both, and where no surface farther away is
@@ -43,7 +52,9 @@ class LocalPlanes {
 
   /// Distance in inverse depth of the nearest other surface: of the neighbours that are not on the
   /// plane, the second nearest to it, since one alone may be wrong. Infinity without one.
-  [[nodiscard]] float gap_around(float x_px, float y_px, const LocalPlane& plane) const;
+  [[nodiscard]] float gap_around(float x_px, float y_px, const LocalPlane& plane) const {
+    return gap_within(static_cast<float>(options_.radius_px), x_px, y_px, plane);
+  }
 
   /// The point nearest to a pixel; nullptr where none is within the radius.
   [[nodiscard]] const EdgePoint* nearest(float x_px, float y_px) const;
@@ -64,11 +75,16 @@ class LocalPlanes {
 
   template <class Visit>
   void for_near(float x_px, float y_px, float radius, const Visit& visit) const;
-  void gather(const EdgePoint& start);
+  [[nodiscard]] float gap_within(float radius_px, float x_px, float y_px,
+                                 const LocalPlane& plane) const;
+  [[nodiscard]] LocalPlane fit_within(float radius_px, const EdgePoint& start);
+  void gather(const EdgePoint& start, float radius_px);
   /// Robust scale of the neighbours' distances from the start's inverse depth, in their sigmas.
   [[nodiscard]] float spread_around_start();
   /// `plane`: change of inverse depth from the start, and slope.
   [[nodiscard]] Sums weighted_sums(const Eigen::Vector3f& plane, float spread) const;
+  /// Biweight of a neighbour's distance from a plane; 0: it is not of it.
+  [[nodiscard]] float weight_of(std::size_t neighbour, const LocalPlane& plane) const;
   [[nodiscard]] Sides plane_sides(const LocalPlane& plane, const Eigen::Vector2f& normal) const;
   [[nodiscard]] Sides behind_sides(const EdgePoint& start, const LocalPlane& plane) const;
   [[nodiscard]] int cell_of(float px, int cells) const;

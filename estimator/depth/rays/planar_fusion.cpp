@@ -20,6 +20,10 @@ constexpr float kMinRelativeSigma = 0.0004F;  ///< f: errors that all neighbours
 constexpr float kResidualRatio = 0.4F;        ///< o
 constexpr float kScatterRatio = 0.15F;        ///< c
 
+LocalPlane plane_at(const EdgePoint& point, LocalPlanes& planes, const FusionOptions& options) {
+  return options.widens ? planes.fit_widened(point) : planes.fit(point);
+}
+
 /// Whether a point agrees with its neighbourhood.
 bool is_supported(const EdgePoint& point, const LocalPlane& plane, const FusionOptions& options) {
   const float change = std::abs(plane.inverse_depth - point.inverse_depth);
@@ -66,7 +70,7 @@ std::vector<EdgePoint> supported_points(const std::vector<EdgePoint>& points,
   LocalPlanes planes(points, options.plane);
   std::vector<EdgePoint> kept;
   for (const EdgePoint& point : points)
-    if (is_supported(point, planes.fit(point), options)) kept.push_back(point);
+    if (is_supported(point, plane_at(point, planes, options), options)) kept.push_back(point);
   return kept;
 }
 
@@ -76,7 +80,7 @@ std::vector<EdgePoint> fuse_planes(const std::vector<EdgePoint>& points,
   LocalPlanes planes(points, options.plane);
   std::vector<EdgePoint> result;
   for (const EdgePoint& point : points) {
-    const LocalPlane plane = planes.fit(point);
+    const LocalPlane plane = plane_at(point, planes, options);
     if (!is_supported(point, plane, options)) continue;
     const float sigma = sigma_of(plane);
     if (!(std::hypot(sigma, point.pose_sigma) <=

@@ -10,8 +10,10 @@ namespace saccade {
 
 struct FusionOptions {
   PlaneOptions plane;
+  /// Whether planes of few points are fitted to those of a wider neighbourhood (LocalPlanes::fit_widened).
+  bool widens = false;
   int min_neighbours = 2;
-  double max_sigma = 0.02;
+  double max_sigma = 0.012;
   double position_sigma_px =
       0.4;  ///< u: error of a point's pixel, which matters on slanted surfaces
 };

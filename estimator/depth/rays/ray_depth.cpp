@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <tuple>
+#include <utility>
 
 #include "core/image.h"
 #include "core/process/parallel.h"
@@ -35,6 +37,7 @@ constexpr PlaneOptions kPropagationPlane{.radius_px = 10};
 constexpr float kPropagationSpacing_px = 1;  ///< between edgels at the same depth
 constexpr float kMinNeighbours = 4;          ///< least sum of weights of a plane
 constexpr float kDepthTolerance = 0.15F;  ///< relative, between a seed's depth and the nearest one
+constexpr float kManyNeighbours = 10;     ///< the same where the seed has another depth than they
 
 /// Relative: however far the gates are opened, a worse depth does not tell near from far.
 constexpr double kLargestSigma = 0.2;
@@ -62,6 +65,10 @@ std::size_t GateCounts::*gate_of(const EdgelSeed& seed, double opening) {
   if (seed.vote_ratio < kMinVoteRatio || seed.strength < least_strength) return &GateCounts::weak;
   if (seed.parallax_px < kMinParallax_px / static_cast<float>(opening)) return &GateCounts::still;
   return nullptr;
+}
+
+bool has_depth_of(const EdgePoint& point, const EdgelSeed& seed) {
+  return std::abs(seed.inverse_depth - point.inverse_depth) <= kDepthTolerance * seed.inverse_depth;
 }
 
 /// Of those that pass the gates `count` to twice as many where there are so many, of each strip a share by its number.
@@ -109,9 +116,11 @@ void describe(config::Fields& fields, RayDepthOptions& options) {
              "denser points whose errors are more correlated, at a higher cost.")
       .range(0, 20);
   fields
-      .value("max_sigma", options.refiner.max_sigma,
-             "Edgels whose inverse depth has a larger standard deviation, divided by the inverse "
-             "depth, are dropped; larger values give more and less accurate points.")
+      .value(
+          "max_sigma", options.refiner.max_sigma,
+          "Edgels whose inverse depth has a larger standard deviation, divided by the inverse "
+          "depth, are dropped. What neighbours make of them together decides whether they become "
+          "points (fusion.max_sigma).")
       .above(0);
   fields
       .value("least_points", options.least_points,
@@ -131,6 +140,15 @@ void describe(config::Fields& fields, RayDepthOptions& options) {
 RayDepth::RayDepth(const RayDepthOptions& options, const DepthLimits& limits,
                    const PinholeCamera& camera)
     : options_(options), limits_(limits), camera_(camera.undistorted()), undistortion_(camera) {}
+
+RayDepthOptions RayDepthOptions::of_given_poses() const {
+  RayDepthOptions options = *this;
+  options.refiner.until_converged = true;
+  options.refiner.max_confirmed_residual_px = 0.5;
+  options.fills = true;
+  options.fusion.widens = true;
+  return options;
+}
 
 RayDepthOptions RayDepthOptions::opened(double opening, const DepthLimits& limits) const {
   const auto open = [&](double sigma) {
@@ -350,33 +368,47 @@ void RayDepth::propagate(const EventRays& rays, const SeedStrips& strips,
   EdgelIndex known(camera_, kPropagationSpacing_px);
   for (const FittedEdgel& fitted : found.edges) known.add(fitted.edge);
   const LocalPlanes planes(supported_points(points_of(found), options_.fusion), kPropagationPlane);
+  // Of the seeds of a pixel whose depth is another than their neighbours', the strongest: all of them would be
+  // tried at the same one. A strip has rows of its own.
+  Image<std::uint8_t> is_tried(camera_.width, camera_.height);
   std::vector<WindowEdgels> confirmed(strips.size());
   parallel_for(strips.size(), [&](std::size_t k) {
     EdgelRefiner refiner(rays, options_.refiner, limits_, camera_);
     refiner.restart(known);
     LocalPlanes own_planes = planes;  // fit() is not thread-safe
-    for (const EdgelSeed& seed : strips[k])
-      if (const auto edge = confirm(seed, own_planes, refiner, confirmed[k].events))
+    for (const EdgelSeed& seed : strips[k]) {
+      const EdgePoint* nearest = own_planes.nearest(seed.pixel.x(), seed.pixel.y());
+      if (nearest == nullptr) continue;
+      if (!has_depth_of(*nearest, seed)) {
+        std::uint8_t& tried =
+            is_tried(static_cast<int>(seed.pixel.x()), static_cast<int>(seed.pixel.y()));
+        if (!options_.fills || std::exchange(tried, 1) != 0) continue;
+      }
+      if (const auto edge = confirm(seed, *nearest, own_planes, refiner, confirmed[k].events))
         confirmed[k].edges.push_back(*edge);
+    }
   });
   append(confirmed, std::move(known), found);
 }
 
-std::optional<FittedEdgel> RayDepth::confirm(const EdgelSeed& seed, LocalPlanes& planes,
-                                             EdgelRefiner& refiner, EdgelEvents& events) const {
-  const float tolerance = kDepthTolerance * seed.inverse_depth;
-  if (refiner.has_similar({seed.pixel, seed.normal, seed.inverse_depth}, tolerance))
+std::optional<FittedEdgel> RayDepth::confirm(const EdgelSeed& seed, const EdgePoint& nearest,
+                                             LocalPlanes& planes, EdgelRefiner& refiner,
+                                             EdgelEvents& events) const {
+  const bool is_of_plane = has_depth_of(nearest, seed);
+  const float expected = is_of_plane ? seed.inverse_depth : nearest.inverse_depth;
+  if (refiner.has_similar({seed.pixel, seed.normal, expected}, kDepthTolerance * expected))
     return std::nullopt;
-  const EdgePoint* nearest = planes.nearest(seed.pixel.x(), seed.pixel.y());
-  if (nearest == nullptr) return std::nullopt;
-  if (std::abs(seed.inverse_depth - nearest->inverse_depth) > tolerance) return std::nullopt;
   const LocalPlane plane =
-      planes.fit({seed.pixel.x(), seed.pixel.y(), nearest->inverse_depth, nearest->sigma});
+      planes.fit({seed.pixel.x(), seed.pixel.y(), nearest.inverse_depth, nearest.sigma});
   if (plane.weights < kMinNeighbours) return std::nullopt;
+  const float gap = planes.gap_around(seed.pixel.x(), seed.pixel.y(), plane);
+  if (!is_of_plane) {
+    const bool is_inside = plane.weights >= kManyNeighbours && planes.surrounds_start(plane);
+    if (!is_inside || std::isfinite(gap)) return std::nullopt;
+  }
   const float model = static_cast<float>(kPropagationPlane.model_error) * plane.inverse_depth;
   const NeighbourPrediction prediction{
-      plane.spread * std::hypot(plane.sigma, model),
-      planes.gap_around(seed.pixel.x(), seed.pixel.y(), plane),
+      plane.spread * std::hypot(plane.sigma, model), gap,
       static_cast<float>(options_.propagation_max_sigma) * plane.inverse_depth};
   return refiner.confirm({seed.pixel, seed.normal, plane.inverse_depth}, prediction, events);
 }

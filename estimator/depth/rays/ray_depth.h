@@ -35,10 +35,16 @@ struct RayDepthOptions {
   /// By how much the gates of accuracy are opened: what a point must have moved is divided by it, its
   /// largest sigma multiplied.
   double gate_opening = 1;
+  /// For poses that are not adjusted by the depths: what makes those better and more of them, at a third
+  /// more time.
+  [[nodiscard]] RayDepthOptions of_given_poses() const;
   [[nodiscard]] RayDepthOptions opened(double opening, const DepthLimits& limits) const;
   /// Relative, of the own events of an edgel that is confirmed by its neighbours.
   double propagation_max_sigma = 0.05;
   FusionOptions fusion;
+  /// Whether seeds of another depth than their neighbours', too, are tried at theirs where these are many
+  /// and all around: their depth in the sweep is that of votes of other edges.
+  bool fills = false;
   bool find_delay = true;  ///< of the events behind the poses (stream_delay.h), and to take it out
   /// Where set, edgels whose depth their events do not tell are found, too, at this inverse depth
   /// [1/m] within kAssumedSigma of it: they say how the camera rotates.
@@ -118,7 +124,7 @@ class RayDepth : public DepthEstimator {
   [[nodiscard]] DepthResult fuse(const WindowEdgels& found) const;
 
  private:
-  /// Gates are opened by these; by the last one depths that are known to 15 % pass best.yaml.
+  /// Gates are opened by these; by the last one depths that are known to 12 % pass best.yaml.
   static constexpr std::array kOpenings = {3.0, 10.0};
 
   /// RayDepthOptions::least_points, but no more than a share of the pixels.
@@ -130,8 +136,8 @@ class RayDepth : public DepthEstimator {
   void refine_seeds(const EventRays& rays, const SeedStrips& strips, WindowEdgels& found) const;
   void propagate(const EventRays& rays, const SeedStrips& strips, WindowEdgels& found) const;
   void assume(const EventRays& rays, WindowEdgels& found) const;
-  [[nodiscard]] std::optional<FittedEdgel> confirm(const EdgelSeed& seed, LocalPlanes& planes,
-                                                   EdgelRefiner& refiner,
+  [[nodiscard]] std::optional<FittedEdgel> confirm(const EdgelSeed& seed, const EdgePoint& nearest,
+                                                   LocalPlanes& planes, EdgelRefiner& refiner,
                                                    EdgelEvents& events) const;
   [[nodiscard]] std::vector<EdgePoint> points_of(const WindowEdgels& found) const;
   [[nodiscard]] PoseError pose_error_over(const ViewWindow& window) const;

@@ -212,6 +212,21 @@ TEST(RayDepth, OpensItsGatesWhereTheMotionTellsLittle) {
   EXPECT_EQ(by_rays(recording().window(kEnd_s / 2), 200).gate_opening, 1);
 }
 
+TEST(RayDepth, GivenPosesGiveMoreAndNoWorsePoints) {
+  const double t_s = kEnd_s / 2;
+  DepthConfig config = best_rays(0);
+  const auto estimate = [&] {
+    return make_depth_estimator(config, recording().world.camera(), kMeanDepth_m)
+        ->estimate(recording().window(t_s));
+  };
+  const std::vector<double> sparse = relative_errors(estimate(), t_s);
+  config.rays = config.rays.of_given_poses();
+  const std::vector<double> dense = relative_errors(estimate(), t_s);
+  EXPECT_GT(dense.size(), sparse.size() + sparse.size() / 8);
+  EXPECT_LE(dense[dense.size() / 2], 1.05 * sparse[sparse.size() / 2]);
+  EXPECT_LE(dense[dense.size() * 9 / 10], 1.1 * sparse[sparse.size() * 9 / 10]);
+}
+
 TEST(RayDepth, NamesTheGateThatEmptiesAView) {
   const Trajectory turning = trajectory_of(
       [](double t_s) { return Rigid3(corner_glide(t_s).rotation(), Eigen::Vector3d::Zero()); },

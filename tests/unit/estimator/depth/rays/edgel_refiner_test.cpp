@@ -63,7 +63,12 @@ struct Refined {
     for (const EdgelSeed& seed : seeds)
       if (const auto edge = refiner.refine(seed, events)) edges.push_back(*edge);
   }
-  static inline const RefinerOptions kOptions{};
+  /// Without the uncertain ones that neighbours make points of.
+  static inline const RefinerOptions kOptions = [] {
+    RefinerOptions options;
+    options.max_sigma = 0.015;
+    return options;
+  }();
 };
 
 double median(std::vector<double> values) {

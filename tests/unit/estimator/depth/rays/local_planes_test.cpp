@@ -74,6 +74,39 @@ TEST(LocalPlanes, OneWrongPointIsNoSurface) {
   EXPECT_TRUE(std::isinf(planes.gap_around(x, y, fit)));
 }
 
+/// Every other column and row of points(): nine within the radius, and eighteen within the wider one.
+std::vector<EdgePoint> sparse_points(float discontinuity) {
+  std::vector<EdgePoint> sparse;
+  for (const EdgePoint& point : points(discontinuity))
+    if (std::fmod(point.x_px, 4) == 0 && std::fmod(point.y_px, 4) == 0) sparse.push_back(point);
+  return sparse;
+}
+
+TEST(LocalPlanes, FewPointsAreJoinedByThoseFartherAway) {
+  LocalPlanes planes(sparse_points(0), {});
+  const EdgePoint start{13, 21, plane(13, 21), kSigma};
+  const LocalPlane narrow = planes.fit(start), wide = planes.fit_widened(start);
+  EXPECT_GT(wide.weights, 1.5F * narrow.weights);
+  EXPECT_LT(wide.sigma, 0.9F * narrow.sigma);
+  LocalPlanes dense(points(0), {});
+  EXPECT_EQ(dense.fit_widened(start).weights, dense.fit(start).weights);
+}
+
+TEST(LocalPlanes, NearAnotherSurfaceFewPointsStayAlone) {
+  LocalPlanes planes(sparse_points(0.2F), {});
+  const EdgePoint start{11, 21, plane(11, 21), kSigma};  // 9 px before the step
+  ASSERT_TRUE(std::isinf(planes.gap_around(11, 21, planes.fit(start))));
+  EXPECT_EQ(planes.fit_widened(start).weights, planes.fit(start).weights);
+}
+
+TEST(LocalPlanes, PointsSurroundWhatIsInterpolated) {
+  LocalPlanes planes(points(0.2F), {});
+  EXPECT_TRUE(planes.surrounds_start(planes.fit({10.5F, 20.5F, plane(10.5F, 20.5F), kSigma})));
+  // Beyond the border, and on the border before a step: the points of the other surface do not count.
+  EXPECT_FALSE(planes.surrounds_start(planes.fit({-1, 20.5F, plane(-1, 20.5F), kSigma})));
+  EXPECT_FALSE(planes.surrounds_start(planes.fit({19, 20.5F, plane(19, 20.5F), kSigma})));
+}
+
 TEST(LocalPlanes, NearestIsWithinTheRadius) {
   LocalPlanes planes(points(0), {});
   const EdgePoint* nearest = planes.nearest(10.7F, 13.2F);
