@@ -147,12 +147,13 @@ LocalPlane LocalPlanes::fit(const EdgePoint& start) {
 }
 
 LocalPlane LocalPlanes::fit_widened(const EdgePoint& start) {
-  const LocalPlane plane = fit(start);
+  LocalPlane plane = fit(start);
   const auto widened_px = static_cast<float>(options_.widened_px);
-  if (plane.weights >= kEnoughWeights ||
-      std::isfinite(gap_within(widened_px, start.x_px, start.y_px, plane)))
-    return plane;
-  return fit_within(widened_px, start);
+  const auto is_alone = [&] {
+    return std::isinf(gap_within(widened_px, start.x_px, start.y_px, plane));
+  };
+  if (plane.weights < kEnoughWeights && is_alone()) plane = fit_within(widened_px, start);
+  return plane;
 }
 
 LocalPlane LocalPlanes::fit_within(float radius_px, const EdgePoint& start) {

@@ -49,6 +49,7 @@ std::vector<std::vector<EdgePoint>> points_of(const std::filesystem::path& folde
 std::vector<ViewWindow> windows_of(const std::vector<RunView>& views, std::span<const Event> events,
                                    const GivenPoses& poses) {
   std::vector<ViewWindow> windows;
+  windows.reserve(views.size());
   for (const RunView& view : views) {
     windows.push_back(
         {events_within(events, ns_from_seconds(view.start_s), ns_from_seconds(view.end_s)),
