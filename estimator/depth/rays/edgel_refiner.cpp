@@ -23,8 +23,9 @@ constexpr double kLastConverged = 0.001;
 constexpr float kObservedWeight = 0.5F;  ///< least weight of the events in a slice that observed it
 constexpr float kMaxInconsistency = 3;   ///< of own and predicted depth, in standard deviations
 constexpr float kSigmaMargin = 2;        ///< on the sigma predicted for the whole window
-constexpr float kMinGap =
-    4;  ///< of a predicted depth to other surfaces, in own standard deviations
+// What confirms a predicted depth: a sharper edgel, and a gap to other surfaces in own sigmas.
+constexpr float kMaxConfirmedResidual_px = 0.4F;
+constexpr float kMinGap = 4;
 
 RegressionOptions last_regression(const RefinerOptions& options) {
   RegressionOptions last = options.regression;
@@ -128,8 +129,7 @@ std::optional<FittedEdgel> EdgelRefiner::confirm(const Edgel& edge,
   gatherer_.gather({0, rays_.slice_count(), 1}, edge, near_);
   const float prior = 1 / (prediction.sigma * prediction.sigma);
   RegressionResult result = regress(near_, last_, static_cast<double>(prediction.sigma));
-  if (!result.ok || static_cast<double>(result.residual_px) > options_.max_confirmed_residual_px)
-    return std::nullopt;
+  if (!result.ok || result.residual_px > kMaxConfirmedResidual_px) return std::nullopt;
   const Edgel next = moved(edge, result);
   if (!is_plausible(next, edge.pixel)) return std::nullopt;
   if (found_.has_similar(next, kSameEdgelDepth * next.inverse_depth)) return std::nullopt;

@@ -25,9 +25,6 @@ struct RefinerOptions {
   /// Whether regressions over the whole window go on until they have converged. What they leave else
   /// is a tenth of a standard deviation, the same for neighbours, so that no fusion takes it out.
   bool until_converged = false;
-  /// Standard deviation of the events of an edgel whose depth its neighbours predict from it. Windows whose poses are
-  /// adjusted by their edgels need sharper ones than those which the neighbours predict well.
-  double max_confirmed_residual_px = 0.4;
   /// Of an inverse depth around that of the stage before [1/m].
   double prior_sigma = std::numeric_limits<double>::infinity();
 };

@@ -144,7 +144,6 @@ RayDepth::RayDepth(const RayDepthOptions& options, const DepthLimits& limits,
 RayDepthOptions RayDepthOptions::of_given_poses() const {
   RayDepthOptions options = *this;
   options.refiner.until_converged = true;
-  options.refiner.max_confirmed_residual_px = 0.5;
   options.fills = true;
   options.fusion.widens = true;
   return options;
