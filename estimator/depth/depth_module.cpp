@@ -66,7 +66,7 @@ void say_how_late(std::span<const DepthResult> results) {
 
 RunSummary run_depth(const RunRequest& request) {
   auto config = read_config<DepthConfig>(request);
-  config.rays = config.rays.of_given_poses();
+  config.rays = config.rays.for_given_poses();
   RunWriter writer(request);
 
   RunTiming timing;

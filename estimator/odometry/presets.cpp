@@ -14,7 +14,7 @@ EdgeTrackerOptions tracking_by_keyframes(double event_map_ratio) {
 }
 
 /// Depth of keyframes by regression over event rays. Less certain points than those of `saccade run
-/// depth` (configs/depth/best.yaml: 1.5 %, two neighbours, 2 %) are kept: the camera is tracked by
+/// depth` (configs/depth/best.yaml: 2 %, two neighbours, 1.2 %) are kept: the camera is tracked by
 /// their number more than by their precision.
 DepthConfig depth_of_keyframes() {
   DepthConfig depth;
@@ -65,6 +65,9 @@ OdometryOptions thesis() {
   mapping.depth.limits = {.near_m = 0.5, .far_m = 50};
   // A keyframe's window is short: points count at three times the usual sigma.
   mapping.depth.thesis.max_sigma = 0.1;
+  // Of the edges that `saccade run refine` finds anew to adjust them together with the poses.
+  mapping.depth.rays.refiner.max_sigma = 0.015;
+  mapping.depth.rays.fusion.max_sigma = 0.02;
   mapping.reconstruction.method = ReconstructionConfig::kGradient;
   mapping.reconstruction.depth.propagation = DepthSourceOptions::Propagation::kSplat;
   mapping.events = 300000;

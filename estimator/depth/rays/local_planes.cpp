@@ -19,7 +19,8 @@ constexpr float kOnPlane = 0.02F;     ///< relative distance of points that belo
 constexpr float kSlopePrior = 0.01F;  ///< sigma of the relative slope [1/px]
 // Sum of weights from which on a plane is known better by its nearest points than by more of them.
 constexpr float kEnoughWeights = 20;
-constexpr int kIterations = 4;  ///< of reweighting; the weights have settled by then
+constexpr float kWidening = 10.F / 7;  ///< of the radius: twice the area
+constexpr int kIterations = 4;         ///< of reweighting; the weights have settled by then
 // surface_side(): a surface behind lies farther by kBehind, relatively, within kBehindRadiusRatio
 // radii, with kMinBehindPoints points or more, since one may be wrong.
 constexpr float kBehind = 0.05F;
@@ -148,7 +149,7 @@ LocalPlane LocalPlanes::fit(const EdgePoint& start) {
 
 LocalPlane LocalPlanes::fit_widened(const EdgePoint& start) {
   LocalPlane plane = fit(start);
-  const auto widened_px = static_cast<float>(options_.widened_px);
+  const auto widened_px = kWidening * static_cast<float>(options_.radius_px);
   const auto is_alone = [&] {
     return std::isinf(gap_within(widened_px, start.x_px, start.y_px, plane));
   };
@@ -188,9 +189,10 @@ LocalPlane LocalPlanes::fit_within(float radius_px, const EdgePoint& start) {
 
 float LocalPlanes::weight_of(std::size_t neighbour, const LocalPlane& plane) const {
   const float change = plane.inverse_depth - start_inverse_depth_;
+  const float per_cut = 1 / (kBiweightCutoff * plane.spread);
   const float residual = difference_[neighbour] - change - plane.slope.x() * dx_[neighbour] -
                          plane.slope.y() * dy_[neighbour];
-  const float u = residual * per_sigma_[neighbour] / (kBiweightCutoff * plane.spread);
+  const float u = residual * per_sigma_[neighbour] * per_cut;
   const float v = std::max(0.F, 1 - u * u);
   return v * v;
 }

@@ -11,8 +11,6 @@ namespace saccade {
 
 struct PlaneOptions {
   double radius_px = 7;
-  /// Of the wider neighbourhood of fit_widened().
-  double widened_px = 10;
   /// Relative deviation of a surface from its tangent plane, added to the sigmas of the points.
   double model_error = 0.001;
 };
@@ -41,11 +39,11 @@ class LocalPlanes {
   /// surface is near: what few points have in common is the larger error there.
   [[nodiscard]] LocalPlane fit_widened(const EdgePoint& start);
 
-  /// Whether points of the last fit()'s plane lie in each quadrant around its start: its depth there is
+  /// Whether points of the last fit's plane lie in each quadrant around its start: its depth there is
   /// interpolated then.
   [[nodiscard]] bool surrounds_start(const LocalPlane& plane) const;
 
-  /// The side of an edge through the start of the last fit() on which its surface lies: 1 that of the
+  /// The side of an edge through the start of the last fit on which its surface lies: 1 that of the
   /// edge's normal, -1 the other; 0 where it continues on both, and where no surface farther away is
   /// found on the side that it leaves empty.
   [[nodiscard]] int surface_side(const EdgePoint& start, const LocalPlane& plane) const;

@@ -116,11 +116,10 @@ void describe(config::Fields& fields, RayDepthOptions& options) {
              "denser points whose errors are more correlated, at a higher cost.")
       .range(0, 20);
   fields
-      .value(
-          "max_sigma", options.refiner.max_sigma,
-          "Edgels whose inverse depth has a larger standard deviation, divided by the inverse "
-          "depth, are dropped. What neighbours make of them together decides whether they become "
-          "points (fusion.max_sigma).")
+      .value("max_sigma", options.refiner.max_sigma,
+             "Edgels whose inverse depth has a larger standard deviation, divided by the inverse "
+             "depth, are dropped; larger values give more and less accurate edgels. Which of them "
+             "become points the planes through them decide (fusion.max_sigma).")
       .above(0);
   fields
       .value("least_points", options.least_points,
@@ -141,7 +140,7 @@ RayDepth::RayDepth(const RayDepthOptions& options, const DepthLimits& limits,
                    const PinholeCamera& camera)
     : options_(options), limits_(limits), camera_(camera.undistorted()), undistortion_(camera) {}
 
-RayDepthOptions RayDepthOptions::of_given_poses() const {
+RayDepthOptions RayDepthOptions::for_given_poses() const {
   RayDepthOptions options = *this;
   options.refiner.until_converged = true;
   options.fills = true;
@@ -367,8 +366,8 @@ void RayDepth::propagate(const EventRays& rays, const SeedStrips& strips,
   EdgelIndex known(camera_, kPropagationSpacing_px);
   for (const FittedEdgel& fitted : found.edges) known.add(fitted.edge);
   const LocalPlanes planes(supported_points(points_of(found), options_.fusion), kPropagationPlane);
-  // Of the seeds of a pixel whose depth is another than their neighbours', the strongest: all of them would be
-  // tried at the same one. A strip has rows of its own.
+  // Of the seeds of a cell of one pixel whose depth is another than their neighbours' the strongest alone is tried at
+  // theirs. Cells begin at whole pixels as the tiles of the strips do (tile_of()), so that no two strips share a row.
   Image<std::uint8_t> is_tried(camera_.width, camera_.height);
   std::vector<WindowEdgels> confirmed(strips.size());
   parallel_for(strips.size(), [&](std::size_t k) {
@@ -379,9 +378,10 @@ void RayDepth::propagate(const EventRays& rays, const SeedStrips& strips,
       const EdgePoint* nearest = own_planes.nearest(seed.pixel.x(), seed.pixel.y());
       if (nearest == nullptr) continue;
       if (!has_depth_of(*nearest, seed)) {
+        if (!options_.fills) continue;
         std::uint8_t& tried =
             is_tried(static_cast<int>(seed.pixel.x()), static_cast<int>(seed.pixel.y()));
-        if (!options_.fills || std::exchange(tried, 1) != 0) continue;
+        if (std::exchange(tried, 1) != 0) continue;
       }
       if (const auto edge = confirm(seed, *nearest, own_planes, refiner, confirmed[k].events))
         confirmed[k].edges.push_back(*edge);

@@ -35,9 +35,9 @@ struct RayDepthOptions {
   /// By how much the gates of accuracy are opened: what a point must have moved is divided by it, its
   /// largest sigma multiplied.
   double gate_opening = 1;
-  /// For poses that are not adjusted by the depths: what makes those better and more of them, at a third
-  /// more time.
-  [[nodiscard]] RayDepthOptions of_given_poses() const;
+  /// For poses that are not adjusted by the depths: regressions go on until they have converged, `fills`, and
+  /// fusion.widens. They give more and better points at a third more time.
+  [[nodiscard]] RayDepthOptions for_given_poses() const;
   [[nodiscard]] RayDepthOptions opened(double opening, const DepthLimits& limits) const;
   /// Relative, of the own events of an edgel that is confirmed by its neighbours.
   double propagation_max_sigma = 0.05;

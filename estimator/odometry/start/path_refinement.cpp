@@ -27,6 +27,8 @@ Trajectory scaled(const Trajectory& path, double scale) {
 
 PathRefinementOptions start_refinement() {
   PathRefinementOptions options;
+  // Sharper than those of known poses: the edges say what the poses are.
+  options.rays.refiner.max_sigma = 0.015;
   options.adjustment.prior_of = WindowAdjustmentOptions::PriorOf::kPose;
   options.adjustment.pose_sigma_px = 20;
   options.adjustment.smoothness_sigma_px = 0.3;

@@ -77,7 +77,7 @@ RunSummary refine_depth(const RunRequest& asked, const RefinementConfig& config,
     request.poses_from = run.record.poses_from;
   if (!request.smooth_poses_s) request.smooth_poses_s = run.record.smooth_poses_s;
   auto method = run.config<DepthConfig>();
-  method.rays = method.rays.of_given_poses();  // as the run did
+  method.rays = method.rays.for_given_poses();  // as the run did
   const GivenPoses given = load_poses(request, dataset);
   const Trajectory& poses = given.trajectory;
   const Events events = load_events(request, dataset);

@@ -212,19 +212,34 @@ TEST(RayDepth, OpensItsGatesWhereTheMotionTellsLittle) {
   EXPECT_EQ(by_rays(recording().window(kEnd_s / 2), 200).gate_opening, 1);
 }
 
-TEST(RayDepth, GivenPosesGiveMoreAndNoWorsePoints) {
-  const double t_s = kEnd_s / 2;
+/// Errors in the middle of the recording, in ascending order, with some of the options for given poses.
+std::vector<double> errors_with(bool fills, bool widens, int threads = 0) {
   DepthConfig config = best_rays(0);
-  const auto estimate = [&] {
-    return make_depth_estimator(config, recording().world.camera(), kMeanDepth_m)
-        ->estimate(recording().window(t_s));
-  };
-  const std::vector<double> sparse = relative_errors(estimate(), t_s);
-  config.rays = config.rays.of_given_poses();
-  const std::vector<double> dense = relative_errors(estimate(), t_s);
-  EXPECT_GT(dense.size(), sparse.size() + sparse.size() / 8);
-  EXPECT_LE(dense[dense.size() / 2], 1.05 * sparse[sparse.size() / 2]);
-  EXPECT_LE(dense[dense.size() * 9 / 10], 1.1 * sparse[sparse.size() * 9 / 10]);
+  config.rays.refiner.until_converged = true;
+  config.rays.fills = fills;
+  config.rays.fusion.widens = widens;
+  set_thread_count(threads);
+  const DepthResult result = make_depth_estimator(config, recording().world.camera(), kMeanDepth_m)
+                                 ->estimate(recording().window(kEnd_s / 2));
+  set_thread_count(0);
+  return relative_errors(result, kEnd_s / 2);
+}
+
+TEST(RayDepth, SeedsAmongTheirNeighboursGiveMoreAndNoWorsePoints) {
+  const std::vector<double> without = errors_with(false, true), with = errors_with(true, true);
+  EXPECT_GT(with.size(), without.size() + without.size() / 20);
+  EXPECT_LE(with[with.size() / 2], 1.05 * without[without.size() / 2]);
+  EXPECT_LE(with[with.size() * 9 / 10], 1.1 * without[without.size() * 9 / 10]);
+}
+
+TEST(RayDepth, WidenedPlanesGiveMoreAndNoWorsePoints) {
+  const std::vector<double> without = errors_with(true, false), with = errors_with(true, true);
+  EXPECT_GT(with.size(), without.size());
+  EXPECT_LE(with[with.size() / 2], 1.1 * without[without.size() / 2]);
+}
+
+TEST(RayDepth, GivenPosesGiveTheSamePointsForAnyNumberOfThreads) {
+  EXPECT_EQ(errors_with(true, true, 1), errors_with(true, true, 3));
 }
 
 TEST(RayDepth, NamesTheGateThatEmptiesAView) {

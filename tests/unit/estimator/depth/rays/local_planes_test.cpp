@@ -74,7 +74,7 @@ TEST(LocalPlanes, OneWrongPointIsNoSurface) {
   EXPECT_TRUE(std::isinf(planes.gap_around(x, y, fit)));
 }
 
-/// Every other column and row of points(): nine within the radius, and eighteen within the wider one.
+/// Every other column and row of points(): some ten within the radius, and twenty within the wider one.
 std::vector<EdgePoint> sparse_points(float discontinuity) {
   std::vector<EdgePoint> sparse;
   for (const EdgePoint& point : points(discontinuity))
@@ -94,15 +94,16 @@ TEST(LocalPlanes, FewPointsAreJoinedByThoseFartherAway) {
 
 TEST(LocalPlanes, NearAnotherSurfaceFewPointsStayAlone) {
   LocalPlanes planes(sparse_points(0.2F), {});
-  const EdgePoint start{11, 21, plane(11, 21), kSigma};  // 9 px before the step
+  const EdgePoint start{11, 21, plane(11, 21), kSigma};  // 9 px before the discontinuity
   ASSERT_TRUE(std::isinf(planes.gap_around(11, 21, planes.fit(start))));
   EXPECT_EQ(planes.fit_widened(start).weights, planes.fit(start).weights);
 }
 
 TEST(LocalPlanes, PointsSurroundWhatIsInterpolated) {
-  LocalPlanes planes(points(0.2F), {});
+  // So small a discontinuity that points beyond it are near enough to be tried.
+  LocalPlanes planes(points(0.06F), {});
   EXPECT_TRUE(planes.surrounds_start(planes.fit({10.5F, 20.5F, plane(10.5F, 20.5F), kSigma})));
-  // Beyond the border, and on the border before a step: the points of the other surface do not count.
+  // Beyond the border, and at the border before the other surface, whose points do not count.
   EXPECT_FALSE(planes.surrounds_start(planes.fit({-1, 20.5F, plane(-1, 20.5F), kSigma})));
   EXPECT_FALSE(planes.surrounds_start(planes.fit({19, 20.5F, plane(19, 20.5F), kSigma})));
 }
