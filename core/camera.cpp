@@ -70,9 +70,11 @@ PinholeCamera PinholeCamera::undistorted() const {
 }
 
 void PinholeCamera::check(const std::string& location) const {
-  if (width <= 0 || height <= 0)
+  // One row or column shows no motion across it, and has no gradient there.
+  if (width < 2 || height < 2)
     throw InputError(location, "camera has no area: " + std::to_string(width) + " x " +
-                                   std::to_string(height) + " px; both sides must be positive");
+                                   std::to_string(height) +
+                                   " px; both sides must have two pixels or more");
   if (width > 65535 || height > 65535)
     throw InputError(location,
                      "camera is wider or higher than 65535 px, the limit of event coordinates");

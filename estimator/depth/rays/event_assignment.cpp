@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "core/process/parallel.h"
 
 namespace saccade {
 namespace {
@@ -33,8 +37,9 @@ std::vector<FittedEdgel> assign_events(const std::vector<FittedEdgel>& edgels,
       owner[events.event[i]] = static_cast<std::uint32_t>(k);
     }
   }
-  std::vector<FittedEdgel> kept;
-  for (std::size_t k = 0; k < edgels.size(); ++k) {
+  std::vector<std::uint8_t> keeps(edgels.size());
+  constexpr std::size_t kGrain = 256;
+  const auto judge = [&](std::size_t k) {
     float own = 0, all = 0;
     for (std::uint32_t i = edgels[k].first; i < edgels[k].last; ++i) {
       const std::uint32_t other = owner[events.event[i]];
@@ -42,8 +47,12 @@ std::vector<FittedEdgel> assign_events(const std::vector<FittedEdgel>& edgels,
       if (other == k || (other != kUnassigned && is_same_depth(edgels[k], edgels[other])))
         own += events.weight[i];
     }
-    if (own >= static_cast<float>(min_own_fraction) * all) kept.push_back(edgels[k]);
-  }
+    keeps[k] = own >= static_cast<float>(min_own_fraction) * all ? 1 : 0;
+  };
+  parallel_for(edgels.size(), judge, kGrain);
+  std::vector<FittedEdgel> kept;
+  for (std::size_t k = 0; k < edgels.size(); ++k)
+    if (keeps[k] != 0) kept.push_back(edgels[k]);
   return kept;
 }
 

@@ -1,7 +1,10 @@
 #include "estimator/depth/rays/planar_fusion.h"
 
 #include <cmath>
+#include <cstddef>
+#include <optional>
 
+#include "core/process/parallel.h"
 #include "estimator/depth/rays/biweight.h"
 
 namespace saccade {
@@ -49,6 +52,44 @@ float local_sigma_of(const EdgePoint& point, const LocalPlane& plane,
   return std::sqrt(position * position + residual * residual + scatter * scatter);
 }
 
+/// nullopt for one that is dropped.
+std::optional<EdgePoint> fused(const EdgePoint& point, LocalPlanes& planes,
+                               const FusionOptions& options) {
+  const LocalPlane plane = plane_at(point, planes, options);
+  if (!is_supported(point, plane, options)) return std::nullopt;
+  const float sigma = sigma_of(plane);
+  if (!(std::hypot(sigma, point.pose_sigma) <=
+        static_cast<float>(options.max_sigma) * plane.inverse_depth))
+    return std::nullopt;
+  const Eigen::Vector2f shift =
+      kContourShift_px * static_cast<float>(planes.surface_side(point, plane)) * point.normal;
+  EdgePoint smooth = point;
+  smooth.x_px += shift.x();
+  smooth.y_px += shift.y();
+  smooth.inverse_depth = plane.inverse_depth + plane.slope.dot(shift);
+  smooth.sigma = std::hypot(sigma, local_sigma_of(point, plane, options), point.pose_sigma);
+  if (!(smooth.inverse_depth > 0)) return std::nullopt;
+  return smooth;
+}
+
+/// What `of_point` makes of each point and the planes through all, in their order.
+template <class OfPoint>
+std::vector<EdgePoint> of_points(const std::vector<EdgePoint>& points, const FusionOptions& options,
+                                 const OfPoint& of_point) {
+  constexpr std::size_t kGrain = 1024;
+  const LocalPlanes planes(points, options.plane);
+  std::vector<std::vector<EdgePoint>> parts((points.size() + kGrain - 1) / kGrain);
+  parallel_for_ranges(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    LocalPlanes own_planes = planes;  // fit() is not thread-safe
+    for (std::size_t i = begin; i < end; ++i)
+      if (const std::optional<EdgePoint> made = of_point(points[i], own_planes))
+        parts[begin / kGrain].push_back(*made);
+  });
+  std::vector<EdgePoint> all;
+  for (const std::vector<EdgePoint>& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
 }  // namespace
 
 void describe(config::Fields& fields, FusionOptions& options) {
@@ -66,36 +107,17 @@ void describe(config::Fields& fields, FusionOptions& options) {
 
 std::vector<EdgePoint> supported_points(const std::vector<EdgePoint>& points,
                                         const FusionOptions& options) {
-  if (points.empty()) return points;
-  LocalPlanes planes(points, options.plane);
-  std::vector<EdgePoint> kept;
-  for (const EdgePoint& point : points)
-    if (is_supported(point, plane_at(point, planes, options), options)) kept.push_back(point);
-  return kept;
+  return of_points(points, options, [&](const EdgePoint& point, LocalPlanes& planes) {
+    const bool is_kept = is_supported(point, plane_at(point, planes, options), options);
+    return is_kept ? std::optional(point) : std::nullopt;
+  });
 }
 
 std::vector<EdgePoint> fuse_planes(const std::vector<EdgePoint>& points,
                                    const FusionOptions& options) {
-  if (points.empty()) return points;
-  LocalPlanes planes(points, options.plane);
-  std::vector<EdgePoint> result;
-  for (const EdgePoint& point : points) {
-    const LocalPlane plane = plane_at(point, planes, options);
-    if (!is_supported(point, plane, options)) continue;
-    const float sigma = sigma_of(plane);
-    if (!(std::hypot(sigma, point.pose_sigma) <=
-          static_cast<float>(options.max_sigma) * plane.inverse_depth))
-      continue;
-    const Eigen::Vector2f shift =
-        kContourShift_px * static_cast<float>(planes.surface_side(point, plane)) * point.normal;
-    EdgePoint smooth = point;
-    smooth.x_px += shift.x();
-    smooth.y_px += shift.y();
-    smooth.inverse_depth = plane.inverse_depth + plane.slope.dot(shift);
-    smooth.sigma = std::hypot(sigma, local_sigma_of(point, plane, options), point.pose_sigma);
-    if (smooth.inverse_depth > 0) result.push_back(smooth);
-  }
-  return result;
+  return of_points(points, options, [&](const EdgePoint& point, LocalPlanes& planes) {
+    return fused(point, planes, options);
+  });
 }
 
 }  // namespace saccade

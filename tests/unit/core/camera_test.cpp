@@ -96,9 +96,11 @@ TEST(Camera, TableHoldsEveryPixel) {
 TEST(Camera, CheckNamesThePlace) {
   PinholeCamera camera = davis();
   EXPECT_EQ(error_of([&] { return camera.check("here"), 0; }), "no error");
-  camera.height = 0;
-  EXPECT_NE(error_of([&] { return camera.check("here"), 0; }).find("here: camera has no area"),
-            std::string::npos);
+  for (const int height : {0, 1}) {
+    camera.height = height;
+    EXPECT_NE(error_of([&] { return camera.check("here"), 0; }).find("here: camera has no area"),
+              std::string::npos);
+  }
   camera = davis();
   camera.fx = -1;
   EXPECT_NE(error_of([&] { return camera.check("here"), 0; }).find("fx"), std::string::npos);
