@@ -102,7 +102,7 @@ UndistortionTable::UndistortionTable(const PinholeCamera& camera) : width_(camer
   pixels_.reserve(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
   for (int y = 0; y < camera.height; ++y)
     for (int x = 0; x < camera.width; ++x)
-      pixels_.push_back(camera.undistort({x, y}).cast<float>());
+      pixels_.emplace_back(camera.undistort({x, y}).cast<float>());
 }
 
 }  // namespace saccade
