@@ -46,9 +46,11 @@ Trajectory start_poses(const RunRequest& request, const Dataset& dataset,
   return start;
 }
 
+/// Less parallax hardly tells a depth.
+constexpr double kPoor_px = 4;
+
 /// Says where the given poses move points at the scene's mean depth by so little that they hardly tell it.
 void say_how_far(const Trajectory& start, const Dataset& dataset, const PinholeCamera& camera) {
-  constexpr double kPoor_px = 4;
   const std::optional<double> depth_m = dataset.facts().mean_depth_m;
   if (!depth_m) return;
   double moved_m = 0;
@@ -73,15 +75,17 @@ Bootstrap found_start(const Dataset& dataset, const PinholeCamera& camera,
   if (start.status == Bootstrap::Status::kNoMotion)
     throw InputError(dataset.folder().string(),
                      "the events show no motion that odometry could start from");
-  if (start.status == Bootstrap::Status::kAmbiguous)
-    throw InputError(dataset.folder().string(),
-                     "the events do not tell in which direction the camera moves at the start: it "
-                     "rotates too fast, or moves too little, for odometry to start without poses "
-                     "(start.truth_s) or a gyroscope (tracker.motion)");
-  if (start.status == Bootstrap::Status::kNoParallax)
-    throw InputError(dataset.folder().string(),
-                     "the events show no parallax that odometry could start from: the camera must "
-                     "move sideways; of a camera that only rotates see saccade run rotation");
+  if (start.status == Bootstrap::Status::kUnexplained)
+    throw InputError(
+        dataset.folder().string(),
+        "no motion of the camera that was tried explains the events at the start: they "
+        "show too few edges, or it shakes too fast, for odometry to start without "
+        "poses (start.truth_s) or a gyroscope (tracker.motion)");
+  if (start.parallax_px < kPoor_px)
+    show_notice(fmt::format(
+        "the start shows {:.2g} px of parallax alone: its directions of motion are hardly known, "
+        "and its depths are assumed",
+        start.parallax_px));
   return start;
 }
 

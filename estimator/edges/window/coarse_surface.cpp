@@ -9,9 +9,6 @@
 namespace saccade {
 namespace {
 
-/// Sigma of neighbouring nodes, relative: constrains those that no edge is near to.
-constexpr double kRoughness = 0.3;
-
 /// (b - a) / sigma.
 class DifferenceCost : public ceres::SizedCostFunction<1, 1, 1> {
  public:

@@ -16,6 +16,10 @@ namespace saccade {
 /// it is edges of several directions at one depth that distinguish rotation from translation.
 class CoarseSurface {
  public:
+  /// Sigma of the difference of neighbouring nodes, relative to the surface's inverse depth: it
+  /// constrains those that no edge is near to.
+  static constexpr double kRoughness = 0.3;
+
   /// Nodes every `spacing_px` > 0 or less over the camera's view, at `inverse_depth` > 0 [1/m].
   CoarseSurface(const PinholeCamera& camera, double spacing_px, double inverse_depth);
 

@@ -17,6 +17,7 @@
 #include "estimator/edges/least_squares/prior_cost.h"
 #include "estimator/edges/least_squares/robust_spread.h"
 #include "estimator/edges/window/coarse_surface.h"
+#include "estimator/edges/window/depth_freedom.h"
 #include "estimator/edges/window/image_motion.h"
 #include "estimator/edges/window/node_correction.h"
 #include "estimator/edges/window/observed_edges.h"
@@ -66,6 +67,7 @@ class WindowProblem {
     if (edges_.edges.size() < kMinEdges) return result;
     add_edges();
     add_nodes();
+    if (options_.has_parallax_prior) add_parallax_prior();
     if (options_.surface_sigma > 0) surface_.add_to(bundle_);
     result.residual_before_px = residual_sigma_px();
     result.ok =
@@ -127,6 +129,7 @@ class WindowProblem {
       ChosenEdge& edge = chosen_[k];
       edge.pixel = fitted.edge.pixel.cast<double>();
       edge.unknowns = unknowns_of(fitted);
+      edge.sigma_px = EdgeNoise::sigma_px(fitted);
       // Robust, since not every landmark is on the edge.
       const EdgePrior prior = prior_of(fitted);
       std::optional<WindowBundle::SurfaceLink> link;
@@ -136,7 +139,7 @@ class WindowProblem {
       for (const ObservedEvent& event : edge.events)
         (void)bundle_.add_event({event.observation,
                                  0,
-                                 EdgeNoise::sigma_px(fitted),
+                                 edge.sigma_px,
                                  static_cast<std::size_t>(event.node),
                                  {1 - event.fraction, event.fraction}});
     }
@@ -145,6 +148,7 @@ class WindowProblem {
   struct ChosenEdge {
     Eigen::Vector2d pixel;
     EdgeUnknowns unknowns;
+    double sigma_px = 0;
     std::vector<ObservedEvent> events;
   };
 
@@ -165,6 +169,30 @@ class WindowProblem {
         bundle_.add_factor(
             std::make_unique<LinearPriorCost<6>>(smooth, Twist::Zero(), std::vector<double>{-1, 1}),
             {correction_.data(i - 1), correction_.data(i)});
+    }
+  }
+
+  void add_parallax_prior() {
+    const Rigid3 view_from_world = window_.world_from_reference().inverse();
+    std::vector<Rigid3> nodes;
+    for (int i = 0; i < correction_.count(); ++i)
+      nodes.push_back(view_from_world * window_.trajectory->at_clamped(correction_.time_s(i)));
+    const double per_node =
+        static_cast<double>(chosen_.size()) / static_cast<double>(surface_.nodes().size());
+    ParallaxPrior prior(
+        observed_.camera(), priors_.typical_depth_m, std::move(nodes),
+        {options_.surface_sigma, CoarseSurface::kRoughness, std::max(1.0, per_node)});
+    std::vector<NodeSighting> sightings;
+    for (const ChosenEdge& edge : chosen_) {
+      sightings.clear();
+      for (const ObservedEvent& event : edge.events)
+        sightings.push_back({event.node, event.fraction});
+      prior.add_edge(sightings, edge.sigma_px);
+    }
+    for (int i = 0; i < correction_.count(); ++i) {
+      const ParallaxPrior::OnNode node = prior.on_node(i);
+      bundle_.add_factor(std::make_unique<LinearPriorCost<6>>(node.root, node.mean),
+                         {correction_.data(i)});
     }
   }
 

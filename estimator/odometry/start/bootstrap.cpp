@@ -1,6 +1,7 @@
 #include "estimator/odometry/start/bootstrap.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -18,10 +19,21 @@ constexpr int kFirstRounds = 1;  ///< of every hypothesis, before the best goes 
 constexpr int kRounds = 3;       ///< of the best
 /// Of contrast: less may be noise, or a dense texture, of which the flow of tiles decides.
 constexpr double kMinGain = 1.1;
-constexpr double kMinParallax_px = 5;  ///< of the path at the typical depth: less is a rotation
-/// Without a gyroscope the direction of motion must be known better than this.
-constexpr double kMaxDirection_deg = 25;
-constexpr double kMaxHalfDirection_deg = 45;  ///< by half of the window
+/// Where the direction of motion is known less well by the flow than this, a rotation alone is tried, too.
+constexpr double kToldDirection_deg = 25;
+constexpr std::size_t kMostHypotheses = 4;  ///< about motions: each is refined by itself
+constexpr double kSame_px = 1;  ///< hypotheses whose refined paths move the image alike are one
+/// Of the greatest evidence: with so much, the path of least parallax is taken. Free depths explain
+/// noise the better, the more parallax there is (depth_freedom.h), and events are not independent.
+constexpr double kLikely = 0.7;
+/// A translation and a rotation of the same image motion are freed by sigmas of the ratio of the
+/// motion's own, at most this or its inverse: nothing moves in one way alone for long.
+constexpr double kMostRatio = 4;
+constexpr double kNodeSpacing_s =
+    0.01;  ///< a hand that shakes at 6 Hz bends its path within 0.02 s
+/// By which a path is extrapolated, as image motion: edges are found again within some pixels, and a
+/// shaken camera turns round within 20 of them.
+constexpr double kStep_px = 2;
 constexpr int kFlowRounds = 3;  ///< each with the motion of the one before as the rough one
 constexpr BurstLimits kFlowBursts{.gap = 0.15, .longest = 1};  ///< as of PlaneSearch
 constexpr std::size_t kFlowEvents = 100000;                    ///< of a window
@@ -59,10 +71,9 @@ double parallax_px(const Trajectory& path, const PinholeCamera& camera) {
   return camera.fx * most;
 }
 
-/// From the first to the last pose of a fit's window, in the frame of its middle.
-Eigen::Vector3d direction_over(const Trajectory& path, const PlaneFit& fit) {
-  return path.at_clamped(fit.middle_s).rotation().conjugate() *
-         (path.at_clamped(fit.end_s).translation() - path.at_clamped(fit.start_s).translation());
+/// From the first to the last pose.
+Rigid3 change(const Trajectory& path) {
+  return path.poses().front().world_from_camera.inverse() * path.poses().back().world_from_camera;
 }
 
 /// From the first pose on, in the unit asked for.
@@ -76,87 +87,95 @@ Trajectory in_world(const Trajectory& path, double depth_m) {
   return Trajectory(std::move(poses));
 }
 
+/// Shares out what a rotation and the translation that looks like it have in common, as the motion does.
+PathRefinementOptions sharing(const PlaneMotion& motion, PathRefinementOptions options) {
+  constexpr double kNoTranslation = 1e3;
+  const double speed = motion.velocity.norm();
+  const double ratio = speed > 0
+                           ? std::clamp(motion.rate.norm() / speed, 1 / kMostRatio, kMostRatio)
+                           : kNoTranslation;
+  WindowAdjustmentOptions& adjustment = options.adjustment;
+  adjustment.rotation_sigma_ratio = ratio;
+  // The sigmas are of translations: the larger of both keeps its own.
+  adjustment.smoothness_sigma_px /= std::max(1.0, ratio);
+  adjustment.pose_sigma_px /= std::max(1.0, ratio);
+  return options;
+}
+
+/// Log likelihood of the events on edges beside that of events anywhere within a pixel of them.
+double evidence(const FreePath& path) {
+  constexpr double kReach_px = 1, kLeastSigma_px = 0.01;
+  const double sigma_px = std::max(path.residual_px, kLeastSigma_px);
+  const double of_each = std::log(2 * kReach_px / (sigma_px * std::sqrt(2 * M_PI * M_E)));
+  return static_cast<double>(path.events) * std::max(0.0, of_each);
+}
+
 class StartFinder {
  public:
   StartFinder(const PinholeCamera& camera, const BootstrapOptions& options,
               const Gyroscope& gyroscope)
       : camera_(camera),
-        options_(options),
+        options_(with_close_nodes(options)),
         gyroscope_(gyroscope),
         search_(options.max_search_s, camera, gyroscope),
         flow_filter_(camera, kFlowBursts, kFlowEvents),
-        refinement_(measuring_rotation(options.refinement, gyroscope), camera) {}
+        refinement_(measuring_rotation(options_.refinement, gyroscope), camera) {}
 
   Bootstrap from(std::span<const Event> events) {
     Bootstrap start;
     const std::vector<PlaneFit> fits = search_.find(events);
     if (fits.empty()) return start;
     const bool is_sharp = fits.front().gain >= kMinGain;
-    std::vector<PlaneFit> candidates = fits;
+    std::optional<FreePath> path;
     if (gyroscope_.is_empty()) {
       const FlowStart by_flow = told_by_flow(events, fits.front());
-      if (is_sharp || by_flow.has_tiles) start.status = Bootstrap::Status::kAmbiguous;
-      if (!by_flow.fit) return start;
-      candidates = {*by_flow.fit};
-    } else if (!is_sharp) {
-      return start;
+      if (is_sharp || by_flow.has_tiles) start.status = Bootstrap::Status::kUnexplained;
+      path = most_likely(events, by_flow.hypotheses);
+    } else if (is_sharp) {
+      start.status = Bootstrap::Status::kUnexplained;
+      path = grown(refinement_, events, best_of(events, fits));
     }
-    start.status = Bootstrap::Status::kNoParallax;
-    const FreePath path = grown(events, best_of(events, candidates));
-    start.edges = path.edges;
-    start.residual_px = path.residual_px;
-    start.parallax_px = parallax_px(path.poses, camera_);
-    // Edges that hardly tell may lead the path away from what the flow says.
-    if (gyroscope_.is_empty() && path.is_clear &&
-        angle_deg(direction_over(path.poses, candidates.front()),
-                  candidates.front().motion.velocity) > kMaxDirection_deg) {
-      start.status = Bootstrap::Status::kAmbiguous;
-      return start;
-    }
-    if (path.is_clear && start.parallax_px >= kMinParallax_px) {
-      start.status = Bootstrap::Status::kFound;
-      start.path = in_world(path.poses, options_.depth_m);
-    }
+    if (!path || !path->is_clear) return start;
+    start.status = Bootstrap::Status::kFound;
+    start.path = in_world(path->poses, options_.depth_m);
+    start.edges = path->edges;
+    start.residual_px = path->residual_px;
+    start.parallax_px = parallax_px(path->poses, camera_);
     return start;
   }
 
  private:
   struct FlowStart {
-    bool has_tiles = false;       ///< enough of them for a motion
-    std::optional<PlaneFit> fit;  ///< nullopt: they do not tell the direction of motion
+    bool has_tiles = false;            ///< enough of them for a motion
+    std::vector<PlaneFit> hypotheses;  ///< the likeliest first
   };
 
-  /// What the flow of tiles makes of a fit. The whole window must tell the direction, and so must
-  /// each half where no trial follows: a rotation that changes within the window is explained by a
-  /// wrong translation, which hardly ever is one for both halves. A trial tells such starts as well,
-  /// and does not refuse those whose halves are too short to tell anything.
+  static BootstrapOptions with_close_nodes(BootstrapOptions options) {
+    double& spacing_s = options.refinement.adjustment.node_spacing_s;
+    spacing_s = std::min(spacing_s, kNodeSpacing_s);
+    return options;
+  }
+
+  /// What the flow of tiles makes of a fit. Where it does not tell the direction of motion, several
+  /// are likely, and that there is none: the camera may only turn.
   [[nodiscard]] FlowStart told_by_flow(std::span<const Event> events, PlaneFit fit) {
     FlowStart start;
     const std::span<const Event> window = between(events, fit.start_s, fit.end_s + kPoseSpacing_s);
+    std::optional<FlowMotion> found;
     for (int i = 0; i < kFlowRounds; ++i) {
-      const bool is_last = i + 1 == kFlowRounds;
-      const std::optional<FlowMotion> found = motion_by_flow(window, fit.motion, is_last);
+      found = motion_by_flow(window, fit.motion, i + 1 == kFlowRounds);
       if (!found) return start;
       start.has_tiles = true;
       fit.motion = {found->velocity, found->rate, Eigen::Vector2d::Zero()};
-      if (is_last && found->direction_deg > kMaxDirection_deg) return start;
     }
-    const double longest_s = std::max(fit.end_s, fit.start_s + options_.window_s);
-    if (longest_s + kStartTrial_s <= seconds_from_ns(events.back().t_ns)) {
-      start.fit = fit;
-      return start;
-    }
-    const double middle_s = (fit.start_s + fit.end_s) / 2,
-                 quarter_s = (fit.end_s - fit.start_s) / 4;
-    const auto agrees = [&](double from_s, double to_s, const PlaneMotion& expected) {
-      const std::optional<FlowMotion> half =
-          motion_by_flow(between(window, from_s, to_s), expected, true);
-      return half && half->direction_deg <= kMaxHalfDirection_deg &&
-             angle_deg(half->velocity, expected.velocity) <= kMaxHalfDirection_deg;
+    const auto add = [&](const Eigen::Vector3d& velocity, const Eigen::Vector3d& rate) {
+      if (start.hypotheses.size() == kMostHypotheses) return;
+      start.hypotheses.push_back(fit);
+      start.hypotheses.back().motion = {velocity, rate, Eigen::Vector2d::Zero()};
     };
-    if (agrees(fit.start_s, middle_s, fit.motion.seen_at(-quarter_s)) &&
-        agrees(middle_s, fit.end_s, fit.motion.seen_at(quarter_s)))
-      start.fit = fit;
+    add(found->velocity, found->rate);
+    if (found->direction_deg > kToldDirection_deg) add(Eigen::Vector3d::Zero(), found->rotation);
+    for (const FlowMotion& other : found->others) add(other.velocity, other.rate);
     return start;
   }
 
@@ -170,30 +189,78 @@ class StartFinder {
     return fit_motion(flows, is_spread_asked);
   }
 
+  /// The path of least parallax among the likely ones; nullopt: no hypothesis explains the events.
+  [[nodiscard]] std::optional<FreePath> most_likely(std::span<const Event> events,
+                                                    const std::vector<PlaneFit>& hypotheses) const {
+    std::vector<Trajectory> begun;
+    std::vector<FreePath> paths;
+    double most = 0;
+    for (const PlaneFit& hypothesis : hypotheses) {
+      const PathRefinement refinement(sharing(hypothesis.motion, options_.refinement), camera_);
+      FreePath path = refined(refinement, events, path_of(hypothesis, gyroscope_), kRounds);
+      const bool is_new = std::none_of(begun.begin(), begun.end(), [&](const Trajectory& other) {
+        return image_motion_px(change(path.poses), change(other)) < kSame_px;
+      });
+      if (!is_new) continue;
+      begun.push_back(path.poses);
+      path = grown(refinement, events, std::move(path));
+      if (!path.is_clear) continue;
+      most = std::max(most, evidence(path));
+      paths.push_back(std::move(path));
+    }
+    std::optional<FreePath> least;
+    for (FreePath& path : paths)
+      if (evidence(path) > 0 && evidence(path) >= kLikely * most &&
+          (!least || parallax_px(path.poses, camera_) < parallax_px(least->poses, camera_)))
+        least = std::move(path);
+    return least;
+  }
+
+  /// By how much two motions differ, of what is at depth 1.
+  [[nodiscard]] double image_motion_px(const Rigid3& a, const Rigid3& b) const {
+    const Twist difference = (a.inverse() * b).log();
+    return camera_.fx * std::hypot(difference.head<3>().norm(), difference.tail<3>().norm());
+  }
+
+  /// How fast a path moves the image in the end [px/s].
+  [[nodiscard]] double speed_px(const Trajectory& path) const {
+    constexpr double kLast_s = 0.02;  // as of extrapolated()
+    const double last_s = std::min(kLast_s, path.end_s() - path.start_s());
+    const Rigid3 before = path.at_clamped(path.end_s() - last_s);
+    return image_motion_px(before, path.poses().back().world_from_camera) / last_s;
+  }
+
   [[nodiscard]] FreePath best_of(std::span<const Event> events,
                                  const std::vector<PlaneFit>& fits) const {
     FreePath best;
     for (const PlaneFit& fit : fits) {
-      FreePath path = refined(events, path_of(fit, gyroscope_), kFirstRounds);
+      FreePath path = refined(refinement_, events, path_of(fit, gyroscope_), kFirstRounds);
       if (best.poses.empty() || path.events > best.events) best = std::move(path);
     }
-    return refined(events, best.poses, kRounds);
+    return refined(refinement_, events, best.poses, kRounds);
   }
 
-  [[nodiscard]] FreePath grown(std::span<const Event> events, FreePath path) const {
+  /// Hands change their velocity: the extrapolated part goes on at the path's acceleration.
+  [[nodiscard]] FreePath grown(const PathRefinement& refinement, std::span<const Event> events,
+                               FreePath path) const {
     const double start_s = path.poses.start_s();
     const double longest_s =
         std::min(options_.window_s, seconds_from_ns(events.back().t_ns) - start_s);
     while (path.is_clear && path.poses.end_s() - start_s < longest_s - kPoseSpacing_s) {
-      const double window_s = std::min(options_.growth * (path.poses.end_s() - start_s), longest_s);
-      path = refined(events, extrapolated(path.poses, start_s + window_s, gyroscope_), 1);
+      const double length_s = path.poses.end_s() - start_s;
+      const double step_s = std::max(2 * kPoseSpacing_s, kStep_px / speed_px(path.poses));
+      const double window_s = std::min({options_.growth * length_s, length_s + step_s, longest_s});
+      const Trajectory longer =
+          extrapolated(path.poses, start_s + window_s, gyroscope_, last_acceleration(path.poses));
+      path = refined(refinement, events, longer, 1);
     }
     return path;
   }
 
-  [[nodiscard]] FreePath refined(std::span<const Event> events, const Trajectory& path,
-                                 int rounds) const {
-    return refinement_.refine(between(events, path.start_s(), path.end_s()), path, rounds);
+  [[nodiscard]] static FreePath refined(const PathRefinement& refinement,
+                                        std::span<const Event> events, const Trajectory& path,
+                                        int rounds) {
+    return refinement.refine(between(events, path.start_s(), path.end_s()), path, rounds);
   }
 
   PinholeCamera camera_;

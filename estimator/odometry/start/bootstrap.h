@@ -26,9 +26,8 @@ struct BootstrapOptions {
 struct Bootstrap {
   enum class Status {
     kFound,
-    kNoMotion,    ///< nothing but noise in all of the events
-    kNoParallax,  ///< the camera only rotated, or its motion was never clear
-    kAmbiguous,   ///< several directions of motion explain the events
+    kNoMotion,     ///< nothing but noise in all of the events
+    kUnexplained,  ///< they show a motion, but no path that was tried explains enough of them
   };
   Status status = Status::kNoMotion;
   Trajectory path;         ///< world_from_camera, the identity at its first pose
@@ -38,15 +37,14 @@ struct Bootstrap {
 };
 
 /// Finds how the camera moved at first, from events alone and up to scale: motions before a plane
-/// by contrast (PlaneSearch), the direction of motion by the flow of tiles (fit_motion), without
-/// which there is no start and which both halves of the window must agree about where no trial
-/// (kStartTrial_s) follows, then path and edges adjusted together (PathRefinement). With a
-/// gyroscope the flow is not needed: of the plane's motions the path by which most events lie on
-/// edges is taken. The path is extrapolated at its last velocity: the longer the
-/// path, the better it distinguishes rotation from translation, but constant velocity explains no
-/// long one. Where the camera rests, or only rotates, the start begins later. `events` in order of
-/// time; `camera` with its lens; `gyroscope`, where it is not empty, measures the rotation.
-/// Deterministic.
+/// by contrast (PlaneSearch), the likely directions of motion by the flow of tiles (fit_motion), then
+/// for each of them path and edges adjusted together (PathRefinement); of the paths that explain about
+/// as many events as the best the one of least parallax. With a gyroscope the flow is not needed: of the
+/// plane's motions the path by which most events lie on edges is taken. The path is extrapolated by
+/// little at a time: the longer it is, the better it distinguishes rotation from translation, but constant
+/// velocity explains no long one. A camera that only rotates starts, too, at hardly any parallax. Where it
+/// rests, the start begins later. `events` in order of time; `camera` with its lens; `gyroscope`, where it
+/// is not empty, measures the rotation. Deterministic.
 [[nodiscard]] Bootstrap find_start(std::span<const Event> events, const PinholeCamera& camera,
                                    const BootstrapOptions& options,
                                    const Gyroscope& gyroscope = {});

@@ -24,7 +24,9 @@ constexpr std::size_t kStarts = 8;     ///< best directions that are refined
 constexpr double kStartsApart = 0.95;  ///< cosine of the angle between them, at most
 constexpr int kSteps = 12;             ///< of Levenberg and Marquardt
 constexpr std::size_t kResamples = 40;
-constexpr double kAgreeing = 0.8;  ///< share of the resamples whose largest angle is stated
+constexpr double kAgreeing = 0.8;       ///< share of the resamples whose largest angle is stated
+constexpr double kModesApart_deg = 25;  ///< closer ones a refinement of the path brings together
+constexpr int kLeastOfMode = 2;         ///< resamples that lead to it: one may do so by chance
 
 Eigen::Matrix<double, 2, 3> by_velocity(const Eigen::Vector2d& at) {
   Eigen::Matrix<double, 2, 3> a;
@@ -197,13 +199,13 @@ double outlier_of(const std::vector<Tile>& tiles, const Motion& motion) {
   return std::max(1e-12, 9 * median(std::move(squares)));
 }
 
-/// How far resampled tiles lead away from the best direction.
-double spread_deg(const std::vector<Tile>& tiles, const std::vector<Motion>& starts,
-                  const Motion& best, double outlier) {
+/// What tiles drawn with replacement lead to.
+std::vector<Motion> resampled(const std::vector<Tile>& tiles, const std::vector<Motion>& starts,
+                              const Motion& best, double outlier) {
   std::vector<Motion> all = starts;
   all.push_back(best);
   const Random random(1);
-  std::vector<double> angles(kResamples);
+  std::vector<Motion> found(kResamples);
   parallel_for(kResamples, [&](std::size_t i) {
     std::vector<Tile> drawn = tiles;
     for (Tile& tile : drawn) tile.count = 0;
@@ -212,10 +214,74 @@ double spread_deg(const std::vector<Tile>& tiles, const std::vector<Motion>& sta
           static_cast<std::size_t>(random.uniform(i, k) * static_cast<double>(tiles.size()));
       drawn[std::min(tiles.size() - 1, index)].count += 1;
     }
-    angles[i] = angle_deg(best.direction, best_of(drawn, all, outlier).direction);
+    found[i] = best_of(drawn, all, outlier);
   });
+  return found;
+}
+
+/// How far they lead away from the best direction.
+double spread_deg(const std::vector<Motion>& resamples, const Motion& best) {
+  std::vector<double> angles;
+  for (const Motion& motion : resamples)
+    angles.push_back(angle_deg(best.direction, motion.direction));
   std::sort(angles.begin(), angles.end());
-  return angles[static_cast<std::size_t>(kAgreeing * static_cast<double>(kResamples))];
+  return angles[static_cast<std::size_t>(kAgreeing * static_cast<double>(angles.size()))];
+}
+
+/// Directions apart from the best and from each other that resamples lead to.
+std::vector<Motion> modes_of(const std::vector<Motion>& resamples, const Motion& best) {
+  struct Mode {
+    Motion motion;
+    int count = 0;
+  };
+  std::vector<Mode> modes = {{best}};
+  for (const Motion& motion : resamples) {
+    const auto same = std::find_if(modes.begin(), modes.end(), [&](const Mode& mode) {
+      return angle_deg(mode.motion.direction, motion.direction) < kModesApart_deg;
+    });
+    if (same == modes.end())
+      modes.push_back({motion, 1});
+    else
+      ++same->count;
+  }
+  std::stable_sort(modes.begin() + 1, modes.end(),
+                   [](const Mode& a, const Mode& b) { return a.count > b.count; });
+  std::vector<Motion> motions;
+  for (std::size_t i = 1; i < modes.size(); ++i)
+    if (modes[i].count >= kLeastOfMode) motions.push_back(modes[i].motion);
+  return motions;
+}
+
+/// With every tile at infinity.
+Eigen::Vector3d rotation_of(const std::vector<Tile>& tiles, double outlier) {
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();
+  for (int i = 0; i <= kReweightings; ++i) {
+    Eigen::Matrix3d normal = 1e-9 * Eigen::Matrix3d::Identity();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    for (const Tile& tile : tiles) {
+      const Eigen::Vector2d residual = tile.flow - tile.b * rate;
+      const double scaled = i == 0 ? 0 : residual.dot(tile.information * residual) / outlier;
+      const double weight = 1 / ((1 + scaled) * (1 + scaled));
+      normal += weight * tile.b.transpose() * tile.information * tile.b;
+      right += weight * tile.b.transpose() * tile.information * tile.flow;
+    }
+    rate = normal.ldlt().solve(right);
+  }
+  return rate;
+}
+
+FlowMotion motion_of(const std::vector<Tile>& tiles, const Motion& motion) {
+  FlowMotion found;
+  found.rate = motion.rate;
+  for (const Tile& tile : tiles) {
+    const Eigen::Vector2d a = tile.a * motion.direction, ha = tile.information * a;
+    found.inverse_depth.push_back(
+        std::max(0.0, ha.dot(tile.flow - tile.b * motion.rate) / std::max(a.dot(ha), 1e-12)));
+  }
+  const double typical = std::max(1e-9, median(found.inverse_depth));
+  found.velocity = typical * motion.direction;
+  for (double& inverse_depth : found.inverse_depth) inverse_depth /= typical;
+  return found;
 }
 
 }  // namespace
@@ -235,17 +301,14 @@ FlowMotion fit_motion(std::span<const TileFlow> flows, bool is_spread_asked) {
   std::vector<Motion> starts = starts_of(tiles, outlier);
   starts.push_back(rough);
   const Motion best = best_of(tiles, starts, outlier);
-  FlowMotion found;
-  found.rate = best.rate;
-  for (const Tile& tile : tiles) {
-    const Eigen::Vector2d a = tile.a * best.direction, ha = tile.information * a;
-    found.inverse_depth.push_back(
-        std::max(0.0, ha.dot(tile.flow - tile.b * best.rate) / std::max(a.dot(ha), 1e-12)));
+  FlowMotion found = motion_of(tiles, best);
+  found.rotation = rotation_of(tiles, outlier);
+  if (is_spread_asked) {
+    const std::vector<Motion> resamples = resampled(tiles, starts, best, outlier);
+    found.direction_deg = spread_deg(resamples, best);
+    for (const Motion& mode : modes_of(resamples, best))
+      found.others.push_back(motion_of(tiles, mode));
   }
-  const double typical = std::max(1e-9, median(found.inverse_depth));
-  found.velocity = typical * best.direction;
-  for (double& inverse_depth : found.inverse_depth) inverse_depth /= typical;
-  if (is_spread_asked) found.direction_deg = spread_deg(tiles, starts, best, outlier);
   return found;
 }
 

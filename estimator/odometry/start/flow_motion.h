@@ -21,6 +21,10 @@ struct FlowMotion {
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();      ///< w [rad/s]
   std::vector<double> inverse_depth;                   ///< of every tile
   double direction_deg = 180;  ///< within which v is known: four fifths of the resamples agree
+  /// Motions whose directions are well apart from this one and from each other, to each of which at
+  /// least two of the resamples lead; those of most resamples first. They have none in turn.
+  std::vector<FlowMotion> others;
+  Eigen::Vector3d rotation = Eigen::Vector3d::Zero();  ///< w that alone explains the flow best
 };
 
 /// Between two vectors, 0 .. 180.
@@ -30,7 +34,7 @@ struct FlowMotion {
 /// certainty): w and the depths follow from each by least squares. A wrong depth explains any speed of
 /// an edge across itself, so what decides are tiles with edges of several directions. How well v is
 /// known is found by drawing tiles with replacement. At least kLeastTiles tiles; deterministic.
-/// Without `is_spread_asked` that is left out, most of the time, and stays 180 degrees.
+/// Without `is_spread_asked` that is left out, most of the time: 180 degrees, and no others.
 [[nodiscard]] FlowMotion fit_motion(std::span<const TileFlow> tiles, bool is_spread_asked = true);
 
 }  // namespace saccade

@@ -23,6 +23,16 @@ Trajectory scaled(const Trajectory& path, double scale) {
   return Trajectory(std::move(poses));
 }
 
+/// Of a free path, whose typical depth is 1: with edges near it whose events hardly tell their depth.
+RayDepthOptions of_assumed_depth(RayDepthOptions rays) {
+  constexpr double kFactor = 9;  // of sigmas, as of the first map (Mapper)
+  rays.refiner.max_sigma *= kFactor;
+  rays.propagation_max_sigma *= kFactor;
+  rays.fusion.max_sigma *= kFactor;
+  rays.assumed_inverse_depth = 1;
+  return rays;
+}
+
 }  // namespace
 
 PathRefinementOptions start_refinement() {
@@ -47,25 +57,31 @@ PathRefinementOptions measuring_rotation(PathRefinementOptions options,
 }
 
 PathRefinement::PathRefinement(const PathRefinementOptions& options, const PinholeCamera& camera)
-    : options_(options), camera_(camera), depth_(options.rays, options.limits, camera) {}
+    : options_(options),
+      camera_(camera),
+      depth_(options.rays, options.limits, camera),
+      assuming_(of_assumed_depth(options.rays), options.limits, camera) {}
 
 FreePath PathRefinement::refine(std::span<const Event> events, const Trajectory& path, int rounds,
                                 double given_until_s) const {
   const bool is_free = given_until_s == kNoGivenPoses;
+  WindowAdjustmentOptions options = options_.adjustment;
+  options.has_parallax_prior = is_free;
   FreePath result;
   result.poses = path;
   const double reference_s =
       (seconds_from_ns(events.front().t_ns) + seconds_from_ns(events.back().t_ns)) / 2;
   for (int i = 0; i < rounds; ++i) {
     const ViewWindow window{events, &result.poses, reference_s};
-    const WindowEdgels edges = depth_.find_edgels(window);
+    WindowEdgels edges = depth_.find_edgels(window);
+    if (is_free && edges.edges.size() < options_.enough_edges)
+      edges = assuming_.find_edgels(window);
     result.edges = edges.edges.size();
     result.events = 0;
     for (const FittedEdgel& edge : edges.edges) result.events += edge.last - edge.first;
     if (edges.edges.size() < options_.min_edges) return result;
-    const WindowAdjustment adjustment =
-        adjust_window(window, edges, camera_,
-                      {given_until_s, given_until_s, median_depth(edges), {}}, options_.adjustment);
+    const WindowAdjustment adjustment = adjust_window(
+        window, edges, camera_, {given_until_s, given_until_s, median_depth(edges), {}}, options);
     if (!adjustment.ok) return result;
     result.residual_px = adjustment.residual_after_px;
     result.poses = is_free ? scaled(adjustment.trajectory, 1 / median_depth(adjustment.edges))

@@ -14,6 +14,9 @@ namespace saccade {
 
 struct PathRefinementOptions {
   std::size_t min_edges = 100;
+  /// Of a free path, as many as are adjusted: where fewer have a depth that can be told, others are
+  /// assumed near the typical depth, as it is where the camera rotates more than it translates.
+  std::size_t enough_edges = 800;
   RayDepthOptions rays;
   DepthLimits limits{.near_m = 0.3, .far_m = 50};  ///< of a free path the typical depth is 1
   WindowAdjustmentOptions adjustment;
@@ -36,7 +39,8 @@ struct FreePath {
 
 /// Path and edges of a start's window (not the module `refine`), adjusted alternately: edges are
 /// found with the path (RayDepth), then both are adjusted (window_adjustment.h). Of a path without
-/// given poses no pose is fixed, and the typical depth stays the unit of length.
+/// given poses no pose is fixed, the typical depth stays the unit of length, and the parallax that
+/// free depths would add to it is taken out (depth_freedom.h).
 class PathRefinement {
  public:
   PathRefinement(const PathRefinementOptions& options, const PinholeCamera& camera);
@@ -50,6 +54,7 @@ class PathRefinement {
   PathRefinementOptions options_;
   PinholeCamera camera_;
   RayDepth depth_;
+  RayDepth assuming_;  ///< with edges of an assumed depth
 };
 
 }  // namespace saccade

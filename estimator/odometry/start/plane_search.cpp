@@ -64,6 +64,15 @@ Parameters px_per_parameter(const PlaneContrast& contrast, const PlaneMotion& mo
   return scale;
 }
 
+/// Whether a longer window has a much lower velocity: a camera that is shaken turns back within it, and no
+/// constant velocity explains it.
+bool has_turned_back(const PlaneFit& before, const PlaneFit& fit) {
+  constexpr double kSlower = 0.7;  // of half a sine the mean is 0.64 of what it begins with
+  if (before.motion_px < kMinMotion_px) return false;
+  return fit.motion_px * (before.end_s - before.start_s) <
+         kSlower * before.motion_px * (fit.end_s - fit.start_s);
+}
+
 /// However long an edge takes to pass a pixel, the first of its events counts: with eight unknowns
 /// pixels that say "no motion" do more harm than in RotationEstimator.
 constexpr BurstLimits kBursts{.gap = 0.15, .longest = 1};
@@ -113,12 +122,14 @@ PlaneFit PlaneSearch::first_rotation(std::span<const Event> events) const {
   PlaneFit fit;
   AngularMotion guess;
   while (true) {
+    const PlaneFit before = fit;
     const RotationEstimate found = estimator.estimate(part, guess);
     fit.start_s = seconds_from_ns(part.front().t_ns);
     fit.end_s = seconds_from_ns(part.back().t_ns);
     fit.middle_s = found.t_s;
     fit.motion.rate = found.turning.rate;
     fit.motion_px = image_motion_px(fit);
+    if (has_turned_back(before, fit)) return before;
     const double duration_s = fit.end_s - fit.start_s;
     if (!found.is_valid || fit.motion_px >= kRotation_px || part.size() == events.size() ||
         duration_s >= max_window_s_)
@@ -186,7 +197,12 @@ std::vector<PlaneFit> PlaneSearch::find(std::span<const Event> events) {
     double duration_s = fit.end_s - fit.start_s;
     while (true) {
       const std::span<const Event> part = window(events, duration_s);
+      const PlaneFit before = fit;
       fit = maximized(part, fit);
+      if (has_turned_back(before, fit)) {
+        fit = before;
+        break;
+      }
       if (fit.motion_px >= 0.9 * kMotion_px || part.size() == events.size() ||
           duration_s >= max_window_s_)
         break;

@@ -76,6 +76,20 @@ TEST(FlowMotion, ARotationHasNoDirection) {
   const FlowMotion found = fit_motion(flows_of(Eigen::Vector3d::Zero(), 3, 0.005));
   EXPECT_GT(found.direction_deg, 45);
   EXPECT_LT((found.rate - kFlowRate).norm(), 0.1);
+  EXPECT_LT((found.rotation - kFlowRate).norm(), 0.02);
+}
+
+TEST(FlowMotion, StatesTheOtherMotionsThatAreLikely) {
+  EXPECT_TRUE(fit_motion(flows_of(kFlowVelocity, 3, 0.001)).others.empty());
+  const FlowMotion found = fit_motion(flows_of(Eigen::Vector3d::Zero(), 3, 0.005));
+  ASSERT_FALSE(found.others.empty());
+  for (std::size_t i = 0; i < found.others.size(); ++i) {
+    EXPECT_GE(angle_deg(found.others[i].velocity, found.velocity), 25);
+    EXPECT_LT((found.others[i].rate - kFlowRate).norm(), 0.1);
+    for (std::size_t k = 0; k < i; ++k)
+      EXPECT_GE(angle_deg(found.others[i].velocity, found.others[k].velocity), 25);
+  }
+  EXPECT_TRUE(fit_motion(flows_of(Eigen::Vector3d::Zero(), 3, 0.005), false).others.empty());
 }
 
 }  // namespace
