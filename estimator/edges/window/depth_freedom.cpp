@@ -16,6 +16,10 @@ Eigen::Vector3d motion_px_per_m(const PinholeCamera& camera, double depth_m) {
   return camera.fx / depth_m * Eigen::Vector3d(1, 1, std::sqrt(radius2));
 }
 
+/// Edges of one outline and nodes next to each other do not vary independently: there are fewer free
+/// depths than edges. Of 0, 1/4 and 1 this had the smallest errors on generated worlds.
+constexpr double kIndependent = 0.25;
+
 }  // namespace
 
 ParallaxPrior::ParallaxPrior(const PinholeCamera& camera, double typical_depth_m,
@@ -38,8 +42,9 @@ void ParallaxPrior::add_edge(std::span<const NodeSighting> events, double sigma_
     information += each * parallax2_px2_[static_cast<std::size_t>(event.node)];
   const double edge2 = freedom_.edge_sigma * freedom_.edge_sigma;
   const double surface2 = freedom_.surface_sigma * freedom_.surface_sigma;
-  const double weight = each * (edge2 / (1 + edge2 * information) +
-                                surface2 / (1 + freedom_.edges_per_node * surface2 * information));
+  const double weight = kIndependent * each *
+                        (edge2 / (1 + edge2 * information) +
+                         surface2 / (1 + freedom_.edges_per_node * surface2 * information));
   for (const NodeSighting& event : events) {
     const auto node = static_cast<std::size_t>(event.node);
     information_[node] += (1 - event.fraction) * weight;

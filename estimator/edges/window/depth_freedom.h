@@ -46,7 +46,7 @@ class ParallaxPrior {
     Matrix6 root = Matrix6::Zero();
   };
   [[nodiscard]] OnNode on_node(int node) const;
-  /// Of the parallax of a node about 0 [1/px^2].
+  /// Of the parallax of a node about 0 [1/px^2]; a quarter of what independent depths would give.
   [[nodiscard]] double information(int node) const {
     return information_[static_cast<std::size_t>(node)];
   }

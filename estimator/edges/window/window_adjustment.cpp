@@ -175,6 +175,7 @@ class WindowProblem {
   void add_parallax_prior() {
     const Rigid3 view_from_world = window_.world_from_reference().inverse();
     std::vector<Rigid3> nodes;
+    nodes.reserve(static_cast<std::size_t>(correction_.count()));
     for (int i = 0; i < correction_.count(); ++i)
       nodes.push_back(view_from_world * window_.trajectory->at_clamped(correction_.time_s(i)));
     const double per_node =

@@ -171,8 +171,9 @@ std::vector<Motion> starts_of(const std::vector<Tile>& tiles, double outlier) {
   }
   std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<Motion> starts;
-  for (const auto& [cost, motion] : all) {
+  for (const std::pair<double, Motion>& candidate : all) {
     if (starts.size() == kStarts) break;
+    const Motion& motion = candidate.second;
     const bool is_near = std::any_of(starts.begin(), starts.end(), [&](const Motion& other) {
       return other.direction.dot(motion.direction) > kStartsApart;
     });
@@ -194,6 +195,7 @@ Motion best_of(const std::vector<Tile>& tiles, const std::vector<Motion>& starts
 /// Squared residual beyond which a tile is an outlier: the scale of the information is unknown.
 double outlier_of(const std::vector<Tile>& tiles, const Motion& motion) {
   std::vector<double> squares;
+  squares.reserve(tiles.size());
   for (const Tile& tile : tiles)
     squares.push_back(residual_of(tile, motion, kNoOutliers).squaredNorm());
   return std::max(1e-12, 9 * median(std::move(squares)));
@@ -222,6 +224,7 @@ std::vector<Motion> resampled(const std::vector<Tile>& tiles, const std::vector<
 /// How far they lead away from the best direction.
 double spread_deg(const std::vector<Motion>& resamples, const Motion& best) {
   std::vector<double> angles;
+  angles.reserve(resamples.size());
   for (const Motion& motion : resamples)
     angles.push_back(angle_deg(best.direction, motion.direction));
   std::sort(angles.begin(), angles.end());

@@ -99,8 +99,9 @@ double PlaneSearch::image_motion_px(const PlaneFit& fit) const {
   double squares = 0;
   int count = 0;
   for (int i = 0; i < kSteps * kSteps; ++i) {
+    const int row = i / kSteps;
     const Eigen::Vector2d pixel((i % kSteps + 0.5) * camera.width / kSteps,
-                                (i / kSteps + 0.5) * camera.height / kSteps);
+                                (row + 0.5) * camera.height / kSteps);
     const Eigen::Vector3d ray = camera.ray(pixel);
     const double inverse_depth = fit.motion.plane().dot(ray);
     if (!(inverse_depth > 0)) continue;
@@ -122,7 +123,7 @@ PlaneFit PlaneSearch::first_rotation(std::span<const Event> events) const {
   PlaneFit fit;
   AngularMotion guess;
   while (true) {
-    const PlaneFit before = fit;
+    PlaneFit before = fit;
     const RotationEstimate found = estimator.estimate(part, guess);
     fit.start_s = seconds_from_ns(part.front().t_ns);
     fit.end_s = seconds_from_ns(part.back().t_ns);
