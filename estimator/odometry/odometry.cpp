@@ -238,7 +238,12 @@ bool Odometry::is_due(double now_s) const {
 
 void Odometry::start_from(FirstMap first, OdometryResult& result) {
   Keyframe& keyframe = first.mapping.keyframe;
-  if (keyframe.edges.size() < Mapper::kMinEdges)
+  const bool has_map = keyframe.edges.size() >= Mapper::kMinEdges;
+  if (!has_map && first.path.given_until_s == kNoGivenPoses)
+    throw InputError("start",
+                     "the path that was found from events alone makes no map: begin elsewhere "
+                     "(--start-s), or give poses (start.truth_s)");
+  if (!has_map)
     throw InputError("start",
                      "the events of the known poses show no edges in depth: the camera must "
                      "move sideways there: begin later (--start-s), or make start.truth_s longer");

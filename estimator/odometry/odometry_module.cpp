@@ -78,13 +78,15 @@ Bootstrap found_start(const Dataset& dataset, const PinholeCamera& camera,
   if (start.status == Bootstrap::Status::kUnexplained)
     throw InputError(
         dataset.folder().string(),
-        "no motion of the camera that was tried explains the events at the start: they "
-        "show too few edges, or it shakes too fast, for odometry to start without "
-        "poses (start.truth_s) or a gyroscope (tracker.motion)");
+        fmt::format(
+            "no motion of the camera that was tried explains the events at the start: they "
+            "show too few edges, or it shakes too fast or moves too little, for odometry to "
+            "start without poses (start.truth_s){}",
+            gyroscope.is_empty() ? " or a gyroscope (tracker.motion)" : ""));
   if (start.parallax_px < kPoor_px)
     show_notice(fmt::format(
         "the start shows {:.2g} px of parallax alone: its directions of motion are hardly known, "
-        "and its depths are assumed",
+        "and most depths may be assumed",
         start.parallax_px));
   return start;
 }

@@ -38,8 +38,12 @@ void ParallaxPrior::add_edge(std::span<const NodeSighting> events, double sigma_
   // An edge shows the part of the parallax that is across it: half of its square, over all directions.
   const double each = 1 / (2 * sigma_px * sigma_px);
   double information = 0;
-  for (const NodeSighting& event : events)
-    information += each * parallax2_px2_[static_cast<std::size_t>(event.node)];
+  for (const NodeSighting& event : events) {
+    const auto node = static_cast<std::size_t>(event.node);
+    SACCADE_CHECK(node + 1 < parallax2_px2_.size());
+    information += each * ((1 - event.fraction) * parallax2_px2_[node] +
+                           event.fraction * parallax2_px2_[node + 1]);
+  }
   const double edge2 = freedom_.edge_sigma * freedom_.edge_sigma;
   const double surface2 = freedom_.surface_sigma * freedom_.surface_sigma;
   const double weight = kIndependent * each *

@@ -15,19 +15,21 @@
 namespace saccade {
 namespace {
 
-constexpr int kFirstRounds = 1;  ///< of every hypothesis, before the best goes on
+constexpr int kFirstRounds = 1;  ///< of every motion with a gyroscope, before the best goes on
 constexpr int kRounds = 3;       ///< of the best
 /// Of contrast: less may be noise, or a dense texture, of which the flow of tiles decides.
 constexpr double kMinGain = 1.1;
 /// Where the direction of motion is known less well by the flow than this, a rotation alone is tried, too.
 constexpr double kToldDirection_deg = 25;
+constexpr double kMinParallax_px = 5;       ///< of a path with a gyroscope, at the typical depth
 constexpr std::size_t kMostHypotheses = 4;  ///< about motions: each is refined by itself
 constexpr double kSame_px = 1;  ///< hypotheses whose refined paths move the image alike are one
 /// Of the greatest evidence: with so much, the path of least parallax is taken. Free depths explain
 /// noise the better, the more parallax there is (depth_freedom.h), and events are not independent.
 constexpr double kLikely = 0.7;
 /// A translation and a rotation of the same image motion are freed by sigmas of the ratio of the
-/// motion's own, at most this or its inverse: nothing moves in one way alone for long.
+/// motion's own, at most this or its inverse, as nothing moves in one way alone for long; but for the
+/// hypothesis that the camera only turns.
 constexpr double kMostRatio = 4;
 constexpr double kNodeSpacing_s =
     0.01;  ///< a hand that shakes at 6 Hz bends its path within 0.02 s
@@ -71,9 +73,9 @@ double parallax_px(const Trajectory& path, const PinholeCamera& camera) {
   return camera.fx * most;
 }
 
-/// From the first to the last pose.
-Rigid3 change(const Trajectory& path) {
-  return path.poses().front().world_from_camera.inverse() * path.poses().back().world_from_camera;
+/// From the first pose on.
+Rigid3 change(const Trajectory& path, double until_s) {
+  return path.poses().front().world_from_camera.inverse() * path.at_clamped(until_s);
 }
 
 /// From the first pose on, in the unit asked for.
@@ -115,7 +117,7 @@ class StartFinder {
   StartFinder(const PinholeCamera& camera, const BootstrapOptions& options,
               const Gyroscope& gyroscope)
       : camera_(camera),
-        options_(with_close_nodes(options)),
+        options_(gyroscope.is_empty() ? of_events_alone(options) : options),
         gyroscope_(gyroscope),
         search_(options.max_search_s, camera, gyroscope),
         flow_filter_(camera, kFlowBursts, kFlowEvents),
@@ -136,6 +138,8 @@ class StartFinder {
       path = grown(refinement_, events, best_of(events, fits));
     }
     if (!path || !path->is_clear) return start;
+    // What a gyroscope measures is no evidence of a start of edges that hardly move.
+    if (!gyroscope_.is_empty() && parallax_px(path->poses, camera_) < kMinParallax_px) return start;
     start.status = Bootstrap::Status::kFound;
     start.path = in_world(path->poses, options_.depth_m);
     start.edges = path->edges;
@@ -150,9 +154,12 @@ class StartFinder {
     std::vector<PlaneFit> hypotheses;  ///< the likeliest first
   };
 
-  static BootstrapOptions with_close_nodes(BootstrapOptions options) {
-    double& spacing_s = options.refinement.adjustment.node_spacing_s;
-    spacing_s = std::min(spacing_s, kNodeSpacing_s);
+  /// Where nothing but the edges tells a rotation from a translation.
+  static BootstrapOptions of_events_alone(BootstrapOptions options) {
+    WindowAdjustmentOptions& adjustment = options.refinement.adjustment;
+    adjustment.node_spacing_s = std::min(adjustment.node_spacing_s, kNodeSpacing_s);
+    adjustment.has_parallax_prior = true;
+    options.refinement.enough_edges = static_cast<std::size_t>(adjustment.edges);
     return options;
   }
 
@@ -168,6 +175,10 @@ class StartFinder {
       start.has_tiles = true;
       fit.motion = {found->velocity, found->rate, Eigen::Vector2d::Zero()};
     }
+    // Nothing would tell a wrong hypothesis.
+    const double longest_s = std::max(fit.end_s, fit.start_s + options_.window_s);
+    const bool has_trial = longest_s + kStartTrial_s / 2 <= seconds_from_ns(events.back().t_ns);
+    if (!has_trial && found->direction_deg > kToldDirection_deg) return start;
     const auto add = [&](const Eigen::Vector3d& velocity, const Eigen::Vector3d& rate) {
       if (start.hypotheses.size() == kMostHypotheses) return;
       start.hypotheses.push_back(fit);
@@ -198,8 +209,9 @@ class StartFinder {
     for (const PlaneFit& hypothesis : hypotheses) {
       const PathRefinement refinement(sharing(hypothesis.motion, options_.refinement), camera_);
       FreePath path = refined(refinement, events, path_of(hypothesis, gyroscope_), kRounds);
+      if (!path.is_clear) continue;
       const bool is_new = std::none_of(begun.begin(), begun.end(), [&](const Trajectory& other) {
-        return image_motion_px(change(path.poses), change(other)) < kSame_px;
+        return apart_px(path.poses, other) < kSame_px;
       });
       if (!is_new) continue;
       begun.push_back(path.poses);
@@ -220,6 +232,13 @@ class StartFinder {
   [[nodiscard]] double image_motion_px(const Rigid3& a, const Rigid3& b) const {
     const Twist difference = (a.inverse() * b).log();
     return camera_.fx * std::hypot(difference.head<3>().norm(), difference.tail<3>().norm());
+  }
+
+  /// The most that two paths of the same times differ, in their middle or in the end.
+  [[nodiscard]] double apart_px(const Trajectory& a, const Trajectory& b) const {
+    const double middle_s = (a.start_s() + a.end_s()) / 2;
+    return std::max(image_motion_px(change(a, middle_s), change(b, middle_s)),
+                    image_motion_px(change(a, a.end_s()), change(b, a.end_s())));
   }
 
   /// How fast a path moves the image in the end [px/s].
@@ -248,6 +267,11 @@ class StartFinder {
         std::min(options_.window_s, seconds_from_ns(events.back().t_ns) - start_s);
     while (path.is_clear && path.poses.end_s() - start_s < longest_s - kPoseSpacing_s) {
       const double length_s = path.poses.end_s() - start_s;
+      if (!gyroscope_.is_empty()) {
+        const double until_s = start_s + std::min(options_.growth * length_s, longest_s);
+        path = refined(refinement, events, extrapolated(path.poses, until_s, gyroscope_), 1);
+        continue;
+      }
       const double step_s = std::max(2 * kPoseSpacing_s, kStep_px / speed_px(path.poses));
       const double window_s = std::min({options_.growth * length_s, length_s + step_s, longest_s});
       const Trajectory longer =

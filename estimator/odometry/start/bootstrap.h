@@ -33,7 +33,7 @@ struct Bootstrap {
   Trajectory path;         ///< world_from_camera, the identity at its first pose
   std::size_t edges = 0;   ///< found with it
   double residual_px = 0;  ///< robust standard deviation of their events
-  double parallax_px = 0;  ///< of the typical depth, between the ends of the path
+  double parallax_px = 0;  ///< of the typical depth, at the largest distance from the first pose
 };
 
 /// Finds how the camera moved at first, from events alone and up to scale: motions before a plane
@@ -41,8 +41,8 @@ struct Bootstrap {
 /// for each of them path and edges adjusted together (PathRefinement); of the paths that explain about
 /// as many events as the best the one of least parallax. With a gyroscope the flow is not needed: of the
 /// plane's motions the path by which most events lie on edges is taken. The path is extrapolated by
-/// little at a time: the longer it is, the better it distinguishes rotation from translation, but constant
-/// velocity explains no long one. A camera that only rotates starts, too, at hardly any parallax. Where it
+/// little at a time: the longer it is, the better it distinguishes rotation from translation, but no
+/// hand keeps its velocity for long. Where no trial (kStartTrial_s) follows, the flow must tell the direction. A camera that only rotates starts, too, at hardly any parallax. Where it
 /// rests, the start begins later. `events` in order of time; `camera` with its lens; `gyroscope`, where it
 /// is not empty, measures the rotation. Deterministic.
 [[nodiscard]] Bootstrap find_start(std::span<const Event> events, const PinholeCamera& camera,

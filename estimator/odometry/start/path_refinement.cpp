@@ -65,8 +65,6 @@ PathRefinement::PathRefinement(const PathRefinementOptions& options, const Pinho
 FreePath PathRefinement::refine(std::span<const Event> events, const Trajectory& path, int rounds,
                                 double given_until_s) const {
   const bool is_free = given_until_s == kNoGivenPoses;
-  WindowAdjustmentOptions options = options_.adjustment;
-  options.has_parallax_prior = is_free;
   FreePath result;
   result.poses = path;
   const double reference_s =
@@ -80,9 +78,10 @@ FreePath PathRefinement::refine(std::span<const Event> events, const Trajectory&
     result.events = 0;
     for (const FittedEdgel& edge : edges.edges) result.events += edge.last - edge.first;
     if (edges.edges.size() < options_.min_edges) return result;
-    const WindowAdjustment adjustment = adjust_window(
-        window, edges, camera_, {given_until_s, given_until_s, median_depth(edges), {}}, options);
-    if (!adjustment.ok) return result;
+    const WindowAdjustment adjustment =
+        adjust_window(window, edges, camera_,
+                      {given_until_s, given_until_s, median_depth(edges), {}}, options_.adjustment);
+    if (!adjustment.ok || adjustment.edges.edges.empty()) return result;
     result.residual_px = adjustment.residual_after_px;
     result.poses = is_free ? scaled(adjustment.trajectory, 1 / median_depth(adjustment.edges))
                            : adjustment.trajectory;

@@ -14,9 +14,9 @@ namespace saccade {
 
 struct PathRefinementOptions {
   std::size_t min_edges = 100;
-  /// Of a free path, as many as are adjusted: where fewer have a depth that can be told, others are
-  /// assumed near the typical depth, as it is where the camera rotates more than it translates.
-  std::size_t enough_edges = 800;
+  /// Of a free path: where fewer have a depth that can be told, as where the camera rotates more than
+  /// it translates, others near the typical depth are adjusted, too.
+  std::size_t enough_edges = 0;
   RayDepthOptions rays;
   DepthLimits limits{.near_m = 0.3, .far_m = 50};  ///< of a free path the typical depth is 1
   WindowAdjustmentOptions adjustment;
@@ -39,8 +39,7 @@ struct FreePath {
 
 /// Path and edges of a start's window (not the module `refine`), adjusted alternately: edges are
 /// found with the path (RayDepth), then both are adjusted (window_adjustment.h). Of a path without
-/// given poses no pose is fixed, the typical depth stays the unit of length, and the parallax that
-/// free depths would add to it is taken out (depth_freedom.h).
+/// given poses no pose is fixed, and the typical depth stays the unit of length.
 class PathRefinement {
  public:
   PathRefinement(const PathRefinementOptions& options, const PinholeCamera& camera);

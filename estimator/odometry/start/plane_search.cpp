@@ -130,7 +130,7 @@ PlaneFit PlaneSearch::first_rotation(std::span<const Event> events) const {
     fit.middle_s = found.t_s;
     fit.motion.rate = found.turning.rate;
     fit.motion_px = image_motion_px(fit);
-    if (has_turned_back(before, fit)) return before;
+    if (gyroscope_.is_empty() && found.is_valid && has_turned_back(before, fit)) return before;
     const double duration_s = fit.end_s - fit.start_s;
     if (!found.is_valid || fit.motion_px >= kRotation_px || part.size() == events.size() ||
         duration_s >= max_window_s_)
@@ -200,7 +200,7 @@ std::vector<PlaneFit> PlaneSearch::find(std::span<const Event> events) {
       const std::span<const Event> part = window(events, duration_s);
       const PlaneFit before = fit;
       fit = maximized(part, fit);
-      if (has_turned_back(before, fit)) {
+      if (gyroscope_.is_empty() && before.gain > 0 && has_turned_back(before, fit)) {
         fit = before;
         break;
       }

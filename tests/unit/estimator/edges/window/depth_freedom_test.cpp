@@ -69,10 +69,10 @@ TEST(ParallaxPrior, SharesAnEventOutBetweenItsNodes) {
 }
 
 TEST(ParallaxPrior, IsAboutTheViewsPlace) {
-  ParallaxPrior prior(kFreeCamera, kFreeDepth_m, nodes_at({5, 5}), kFreedom);
+  ParallaxPrior prior(kFreeCamera, kFreeDepth_m, nodes_at({5, 5, 5}), kFreedom);
   prior.add_edge(seen_edges()[2].events, 0.1);
   const ParallaxPrior::OnNode node = prior.on_node(0);
-  const Rigid3 corrected = nodes_at({5, 5})[0] * Rigid3::exp(node.mean);
+  const Rigid3 corrected = nodes_at({5, 5, 5})[0] * Rigid3::exp(node.mean);
   EXPECT_LT(corrected.translation().norm(), 1e-12);
   // Whitened, the whole way back is as many sigmas as the parallax of 5 px.
   EXPECT_NEAR((node.root * node.mean).norm(), 5 * std::sqrt(prior.information(0)), 1e-9);

@@ -113,7 +113,8 @@ TEST(Bootstrap, AMotionOfAFewPixelsEnds) {
 
 TEST(Bootstrap, ARotationIsAStartWithoutParallax) {
   const auto turn = [](double t_s) { return Rigid3(so3_exp(4 * t_s * kRate), {0, 0, 0}); };
-  const Bootstrap start = find_start(recorded(turn, kEnd_s), world().camera(), quick());
+  const Bootstrap start =
+      find_start(recorded(turn, kEnd_s + kStartTrial_s), world().camera(), quick());
   ASSERT_EQ(start.status, Bootstrap::Status::kFound);
   EXPECT_LT(start.parallax_px, 2) << "its turn moves the picture by 40 px";
   for (const StampedPose& pose : start.path.poses()) {
@@ -123,6 +124,12 @@ TEST(Bootstrap, ARotationIsAStartWithoutParallax) {
   }
 }
 
+TEST(Bootstrap, WithoutATrialARotationIsNoStart) {
+  const auto turn = [](double t_s) { return Rigid3(so3_exp(4 * t_s * kRate), {0, 0, 0}); };
+  EXPECT_EQ(find_start(recorded(turn, kEnd_s), world().camera(), quick()).status,
+            Bootstrap::Status::kUnexplained);
+}
+
 TEST(Bootstrap, FindsThePathOfAShakenCamera) {
   // To and fro at 3 Hz by 0.04 rad and a pixel of parallax: no direction of motion can be told.
   const auto shaken = [](double t_s) {
@@ -130,7 +137,8 @@ TEST(Bootstrap, FindsThePathOfAShakenCamera) {
     return Rigid3(so3_exp(angle * Eigen::Vector3d(0.4, 1, -0.5)),
                   {0.01 * std::sin(25 * t_s), 0, 0});
   };
-  const Bootstrap start = find_start(recorded(shaken, kEnd_s), world().camera(), quick());
+  const Bootstrap start =
+      find_start(recorded(shaken, kEnd_s + kStartTrial_s), world().camera(), quick());
   ASSERT_EQ(start.status, Bootstrap::Status::kFound);
   EXPECT_GT(start.path.end_s() - start.path.start_s(), 0.15);
   for (const StampedPose& pose : start.path.poses()) {
