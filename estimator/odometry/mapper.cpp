@@ -87,10 +87,7 @@ MappingOptions relaxed(MappingOptions options) {
   constexpr double kFactor = 9;
   options.certain_sigma = options.max_sigma;
   options.max_sigma *= kFactor;
-  RayDepthOptions& rays = options.depth.rays;
-  rays.refiner.max_sigma *= kFactor;
-  rays.propagation_max_sigma *= kFactor;
-  rays.fusion.max_sigma *= kFactor;
+  options.depth.rays = options.depth.rays.with_larger_sigmas(kFactor);
   return options;
 }
 

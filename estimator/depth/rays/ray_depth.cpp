@@ -148,6 +148,14 @@ RayDepthOptions RayDepthOptions::for_given_poses() const {
   return options;
 }
 
+RayDepthOptions RayDepthOptions::with_larger_sigmas(double factor) const {
+  RayDepthOptions options = *this;
+  options.refiner.max_sigma *= factor;
+  options.propagation_max_sigma *= factor;
+  options.fusion.max_sigma *= factor;
+  return options;
+}
+
 RayDepthOptions RayDepthOptions::opened(double opening, const DepthLimits& limits) const {
   const auto open = [&](double sigma) {
     return std::max(sigma, std::min(opening * sigma, kLargestSigma));

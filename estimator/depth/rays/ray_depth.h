@@ -38,6 +38,8 @@ struct RayDepthOptions {
   /// For poses that are not adjusted by the depths: regressions go on until they have converged, `fills`, and
   /// fusion.widens. They give more and better points at a third more time.
   [[nodiscard]] RayDepthOptions for_given_poses() const;
+  /// Edgels and points of `factor` times the sigma count, too.
+  [[nodiscard]] RayDepthOptions with_larger_sigmas(double factor) const;
   [[nodiscard]] RayDepthOptions opened(double opening, const DepthLimits& limits) const;
   /// Relative, of the own events of an edgel that is confirmed by its neighbours.
   double propagation_max_sigma = 0.05;

@@ -17,10 +17,10 @@
 #include "estimator/edges/least_squares/prior_cost.h"
 #include "estimator/edges/least_squares/robust_spread.h"
 #include "estimator/edges/window/coarse_surface.h"
-#include "estimator/edges/window/depth_freedom.h"
 #include "estimator/edges/window/image_motion.h"
 #include "estimator/edges/window/node_correction.h"
 #include "estimator/edges/window/observed_edges.h"
+#include "estimator/edges/window/parallax_prior.h"
 
 namespace saccade {
 namespace {

@@ -38,7 +38,7 @@ struct WindowAdjustmentOptions {
   /// edges are independent.
   double surface_sigma = 0;
   double surface_spacing_px = 15;  ///< of the surface's nodes
-  /// Of a path whose scale is free, with a surface: a ParallaxPrior (depth_freedom.h).
+  /// Of a path whose scale is free, with a surface: a ParallaxPrior (parallax_prior.h).
   bool has_parallax_prior = false;
 };
 

@@ -16,7 +16,7 @@ namespace saccade {
 namespace {
 
 constexpr int kFirstRounds = 1;  ///< of every motion with a gyroscope, before the best goes on
-constexpr int kRounds = 3;       ///< of the best
+constexpr int kRounds = 3;       ///< of the best, and of every hypothesis without a gyroscope
 /// Of contrast: less may be noise, or a dense texture, of which the flow of tiles decides.
 constexpr double kMinGain = 1.1;
 /// Where the direction of motion is known less well by the flow than this, a rotation alone is tried, too.
@@ -25,14 +25,14 @@ constexpr double kMinParallax_px = 5;       ///< of a path with a gyroscope, at 
 constexpr std::size_t kMostHypotheses = 4;  ///< about motions: each is refined by itself
 constexpr double kSame_px = 1;  ///< hypotheses whose refined paths move the image alike are one
 /// Of the greatest evidence: with so much, the path of least parallax is taken. Free depths explain
-/// noise the better, the more parallax there is (depth_freedom.h), and events are not independent.
+/// noise the better, the more parallax there is (parallax_prior.h), and events are not independent.
 constexpr double kLikely = 0.7;
 /// A translation and a rotation of the same image motion are freed by sigmas of the ratio of the
 /// motion's own, at most this or its inverse, as nothing moves in one way alone for long; but for the
 /// hypothesis that the camera only turns.
 constexpr double kMostRatio = 4;
-constexpr double kNodeSpacing_s =
-    0.01;  ///< a hand that shakes at 6 Hz bends its path within 0.02 s
+/// A hand that shakes at 6 Hz bends its path within 0.02 s.
+constexpr double kNodeSpacing_s = 0.01;
 /// By which a path is extrapolated, as image motion: edges are found again within some pixels, and a
 /// shaken camera turns round within 20 of them.
 constexpr double kStep_px = 2;

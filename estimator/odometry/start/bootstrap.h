@@ -41,8 +41,9 @@ struct Bootstrap {
 /// for each of them path and edges adjusted together (PathRefinement); of the paths that explain about
 /// as many events as the best the one of least parallax. With a gyroscope the flow is not needed: of the
 /// plane's motions the path by which most events lie on edges is taken. The path is extrapolated by
-/// little at a time: the longer it is, the better it distinguishes rotation from translation, but no
-/// hand keeps its velocity for long. Where no trial (kStartTrial_s) follows, the flow must tell the direction. A camera that only rotates starts, too, at hardly any parallax. Where it
+/// little at a time: the longer it is, the better it distinguishes rotation from translation, but no hand
+/// keeps its velocity for long. Where no trial (kStartTrial_s) follows, the flow must tell the direction.
+/// A camera that only rotates starts, too, at hardly any parallax; with a gyroscope it does not. Where it
 /// rests, the start begins later. `events` in order of time; `camera` with its lens; `gyroscope`, where it
 /// is not empty, measures the rotation. Deterministic.
 [[nodiscard]] Bootstrap find_start(std::span<const Event> events, const PinholeCamera& camera,

@@ -24,13 +24,11 @@ Trajectory scaled(const Trajectory& path, double scale) {
 }
 
 /// Of a free path, whose typical depth is 1: with edges near it whose events hardly tell their depth.
-RayDepthOptions of_assumed_depth(RayDepthOptions rays) {
-  constexpr double kFactor = 9;  // of sigmas, as of the first map (Mapper)
-  rays.refiner.max_sigma *= kFactor;
-  rays.propagation_max_sigma *= kFactor;
-  rays.fusion.max_sigma *= kFactor;
-  rays.assumed_inverse_depth = 1;
-  return rays;
+RayDepthOptions of_assumed_depth(const RayDepthOptions& rays) {
+  constexpr double kFactor = 9;  // as of the first map (Mapper)
+  RayDepthOptions assuming = rays.with_larger_sigmas(kFactor);
+  assuming.assumed_inverse_depth = 1;
+  return assuming;
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "estimator/edges/window/depth_freedom.h"
+#include "estimator/edges/window/parallax_prior.h"
 
 #include <cmath>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "estimator/edges/window/depth_freedom.h"
+#include "estimator/edges/window/parallax_prior.h"
 
 #include <gtest/gtest.h>
 
@@ -18,11 +18,12 @@ struct SeenEdge {
 };
 
 std::vector<SeenEdge> seen_edges() {
-  return {
-      {{{0, 0}, {1, 0}, {2, 0}}, 0.1}, {{{1, 0}, {1, 0}, {2, 0}}, 0.4}, {{{0, 0}, {2, 0}}, 0.2}};
+  return {{{{0, 0}, {1, 0}, {2, 0}}, 0.1},
+          {{{0, 0.25}, {1, 0.5}, {2, 0}}, 0.4},
+          {{{0, 0}, {2, 0}}, 0.2}};
 }
 
-/// Sideways from the view, by parallaxes of `px`; the last node ends the path.
+/// Sideways from the view by parallaxes of `px`; the last node ends the path.
 std::vector<Rigid3> nodes_at(const std::vector<double>& px) {
   std::vector<Rigid3> nodes;
   for (const double p : px)
@@ -37,8 +38,12 @@ double integrated(const std::vector<double>& px) {
   double sum = 0;
   for (const SeenEdge& edge : seen_edges()) {
     double information = 0;
-    for (const NodeSighting& event : edge.events)
-      information += std::pow(px[static_cast<std::size_t>(event.node)] / edge.sigma_px, 2) / 2;
+    for (const NodeSighting& event : edge.events) {
+      const auto node = static_cast<std::size_t>(event.node);
+      const double later = event.fraction > 0 ? event.fraction * px[node + 1] * px[node + 1] : 0;
+      information += ((1 - event.fraction) * px[node] * px[node] + later) /
+                     (2 * edge.sigma_px * edge.sigma_px);
+    }
     const double n = kFreedom.edges_per_node;
     sum += std::log(1 + std::pow(kFreedom.edge_sigma, 2) * information) / 2 +
            std::log(1 + n * std::pow(kFreedom.surface_sigma, 2) * information) / (2 * n);
@@ -78,6 +83,21 @@ TEST(ParallaxPrior, IsAboutTheViewsPlace) {
   EXPECT_NEAR((node.root * node.mean).norm(), 5 * std::sqrt(prior.information(0)), 1e-9);
   EXPECT_LT((node.root * (Twist() << 0, 0, 0, 1, 2, 3).finished()).norm(), 1e-12)
       << "of a rotation it says nothing";
+}
+
+TEST(ParallaxPrior, AlongTheViewAWayMovesThePictureLess) {
+  constexpr double kWay_m = 0.1;
+  const std::vector<Rigid3> nodes(3, Rigid3({1, 0, 0, 0}, {0, 0, kWay_m}));
+  ParallaxPrior prior(kFreeCamera, kFreeDepth_m, nodes, kFreedom);
+  prior.add_edge(std::vector<NodeSighting>{{0, 0}, {1, 0}}, 0.1);
+  double squares = 0, count = 0;
+  for (int x = 0; x < kFreeCamera.width; ++x)
+    for (int y = 0; y < kFreeCamera.height; ++y, ++count)
+      squares += kFreeCamera.ray({x, y}).head<2>().squaredNorm();
+  const double px = kFreeCamera.fx * kWay_m / kFreeDepth_m * std::sqrt(squares / count);
+  const ParallaxPrior::OnNode node = prior.on_node(0);
+  EXPECT_NEAR((node.root * node.mean).norm(), px * std::sqrt(prior.information(0)),
+              1e-3 * px * std::sqrt(prior.information(0)));
 }
 
 TEST(ParallaxPrior, AnEdgeOfUnknownDepthTellsLessTheMoreParallaxThereIs) {
