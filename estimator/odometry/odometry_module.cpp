@@ -82,7 +82,7 @@ Bootstrap found_start(const Dataset& dataset, const PinholeCamera& camera,
             "no motion of the camera that was tried explains the events at the start: they "
             "show too few edges, or it shakes too fast or moves too little, for odometry to "
             "start without poses (start.truth_s){}",
-            gyroscope.is_empty() ? " or a gyroscope (tracker.motion)" : ""));
+            gyroscope.is_empty() ? " or a gyroscope (tracking.prediction: imu)" : ""));
   if (start.parallax_px < kPoor_px)
     show_notice(fmt::format(
         "the start shows {:.2g} px of parallax alone: its directions of motion are hardly known, "
