@@ -14,13 +14,13 @@
 #include "estimator/edges/edge_matches.h"
 #include "estimator/edges/edge_noise.h"
 #include "estimator/edges/least_squares/bundle_solver.h"
+#include "estimator/edges/least_squares/parallax_prior.h"
 #include "estimator/edges/least_squares/prior_cost.h"
 #include "estimator/edges/least_squares/robust_spread.h"
 #include "estimator/edges/window/coarse_surface.h"
 #include "estimator/edges/window/image_motion.h"
 #include "estimator/edges/window/node_correction.h"
 #include "estimator/edges/window/observed_edges.h"
-#include "estimator/edges/window/parallax_prior.h"
 
 namespace saccade {
 namespace {
@@ -67,7 +67,7 @@ class WindowProblem {
     if (edges_.edges.size() < kMinEdges) return result;
     add_edges();
     add_nodes();
-    if (options_.has_parallax_prior) add_parallax_prior();
+    add_parallax_prior();
     if (options_.surface_sigma > 0) surface_.add_to(bundle_);
     result.residual_before_px = residual_sigma_px();
     result.ok =
@@ -123,34 +123,41 @@ class WindowProblem {
       return edges_.edges[k * all / count];
     };
     parallel_for(
-        count, [&](std::size_t k) { chosen_[k].events = observed_.of(fitted_at(k)); }, kGrain);
+        count, [&](std::size_t k) { choose(fitted_at(k), chosen_[k]); }, kGrain);
     for (std::size_t k = 0; k < count; ++k) {
       const FittedEdgel& fitted = fitted_at(k);
       ChosenEdge& edge = chosen_[k];
-      edge.pixel = fitted.edge.pixel.cast<double>();
-      edge.unknowns = unknowns_of(fitted);
-      edge.sigma_px = EdgeNoise::sigma_px(fitted);
+      const Eigen::Vector2d pixel = fitted.edge.pixel.cast<double>();
       // Robust, since not every landmark is on the edge.
       const EdgePrior prior = prior_of(fitted);
+      edge.depth_sigma = prior.sigma[0];
       std::optional<WindowBundle::SurfaceLink> link;
-      if (options_.surface_sigma > 0) link = surface_.link(edge.pixel, options_.surface_sigma);
-      bundle_.add_edge(edge.pixel, fitted.edge.normal.cast<double>(), edge.unknowns.data(),
+      if (options_.surface_sigma > 0) {
+        link = surface_.link(pixel, options_.surface_sigma);
+        edge.depth_sigma = options_.surface_sigma / priors_.typical_depth_m;
+      }
+      bundle_.add_edge(pixel, fitted.edge.normal.cast<double>(), edge.unknowns.data(),
                        {prior.mean, prior.sigma, true}, link);
-      for (const ObservedEvent& event : edge.events)
-        (void)bundle_.add_event({event.observation,
-                                 0,
-                                 edge.sigma_px,
-                                 static_cast<std::size_t>(event.node),
-                                 {1 - event.fraction, event.fraction}});
+      for (const WindowBundle::Event& event : edge.events) (void)bundle_.add_event(event);
     }
   }
 
   struct ChosenEdge {
-    Eigen::Vector2d pixel;
     EdgeUnknowns unknowns;
-    double sigma_px = 0;
-    std::vector<ObservedEvent> events;
+    std::vector<WindowBundle::Event> events;
+    double depth_sigma = 0;  ///< before its events, of its inverse depth [1/m]
   };
+
+  void choose(const FittedEdgel& fitted, ChosenEdge& edge) const {
+    edge.unknowns = unknowns_of(fitted);
+    const double sigma_px = EdgeNoise::sigma_px(fitted);
+    for (const ObservedEvent& event : observed_.of(fitted))
+      edge.events.push_back({event.observation,
+                             0,
+                             sigma_px,
+                             static_cast<std::size_t>(event.node),
+                             {1 - event.fraction, event.fraction}});
+  }
 
   [[nodiscard]] EdgePrior prior_of(const FittedEdgel& fitted) const {
     return edge_prior(fitted.edge, unknowns_of(fitted), landmarks_);
@@ -173,26 +180,17 @@ class WindowProblem {
   }
 
   void add_parallax_prior() {
-    const Rigid3 view_from_world = window_.world_from_reference().inverse();
-    std::vector<Rigid3> nodes;
-    nodes.reserve(static_cast<std::size_t>(correction_.count()));
-    for (int i = 0; i < correction_.count(); ++i)
-      nodes.push_back(view_from_world * window_.trajectory->at_clamped(correction_.time_s(i)));
-    const double per_node =
-        static_cast<double>(chosen_.size()) / static_cast<double>(surface_.nodes().size());
-    ParallaxPrior prior(
-        observed_.camera(), priors_.typical_depth_m, std::move(nodes),
-        {options_.surface_sigma, CoarseSurface::kRoughness, std::max(1.0, per_node)});
-    std::vector<NodeSighting> sightings;
-    for (const ChosenEdge& edge : chosen_) {
-      sightings.clear();
-      for (const ObservedEvent& event : edge.events)
-        sightings.push_back({event.node, event.fraction});
-      prior.add_edge(sightings, edge.sigma_px);
-    }
+    FreeSurface surface;
+    if (options_.surface_sigma > 0)
+      surface = {CoarseSurface::kRoughness / priors_.typical_depth_m,
+                 std::max(1.0, static_cast<double>(chosen_.size()) /
+                                   static_cast<double>(surface_.nodes().size()))};
+    ParallaxPrior prior(observed_.camera(), static_cast<std::size_t>(correction_.count()), surface);
+    for (const ChosenEdge& edge : chosen_)
+      prior.add_edge(edge.depth_sigma, std::span<const WindowBundle::Event>(edge.events));
     for (int i = 0; i < correction_.count(); ++i) {
-      const ParallaxPrior::OnNode node = prior.on_node(i);
-      bundle_.add_factor(std::make_unique<LinearPriorCost<6>>(node.root, node.mean),
+      const ParallaxPrior::OnTwist twist = prior.on(static_cast<std::size_t>(i));
+      bundle_.add_factor(std::make_unique<LinearPriorCost<6>>(twist.root, twist.mean),
                          {correction_.data(i)});
     }
   }

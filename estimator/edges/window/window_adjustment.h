@@ -38,8 +38,6 @@ struct WindowAdjustmentOptions {
   /// edges are independent.
   double surface_sigma = 0;
   double surface_spacing_px = 15;  ///< of the surface's nodes
-  /// Of a path whose scale is free, with a surface: a ParallaxPrior (parallax_prior.h).
-  bool has_parallax_prior = false;
 };
 
 /// A time before all others.
@@ -64,8 +62,9 @@ struct WindowAdjustment {
 
 /// Bundle adjustment over a sliding window (Triggs et al., 2000), edges in place of points: a
 /// NodeCorrection of the path, and of every edge the inverse depth, offset, tilt and hysteresis. It
-/// minimises the residual of edge_residual.h with the noise model of edge_noise.h as an EdgeBundle. The fixed poses and the landmarks on which edges lie
-/// constrain the gauge. All edges are then fitted to the corrected path one by one. Deterministic
+/// minimises the residual of edge_residual.h with the noise model of edge_noise.h as an EdgeBundle,
+/// with what the freedom of all these depths makes of the path taken out again (ParallaxPrior). The
+/// fixed poses and the landmarks on which edges lie constrain the gauge. All edges are then fitted to the corrected path one by one. Deterministic
 /// for any number of threads.
 [[nodiscard]] WindowAdjustment adjust_window(const ViewWindow& window, const WindowEdgels& edges,
                                              const PinholeCamera& camera,

@@ -158,7 +158,6 @@ class StartFinder {
   static BootstrapOptions of_events_alone(BootstrapOptions options) {
     WindowAdjustmentOptions& adjustment = options.refinement.adjustment;
     adjustment.node_spacing_s = std::min(adjustment.node_spacing_s, kNodeSpacing_s);
-    adjustment.has_parallax_prior = true;
     options.refinement.enough_edges = static_cast<std::size_t>(adjustment.edges);
     return options;
   }
