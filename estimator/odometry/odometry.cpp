@@ -116,8 +116,13 @@ OdometryResult Odometry::run(std::span<const Event> events, const PathEstimate& 
   monitor_.emplace(camera_, Recording{.events = events});
   {
     const ScopedTimer clock(result.mapping_s);
-    start_from(first_map(events, start, mapper_, camera_, start_, gyroscope_), result);
+    if (!start_from(first_map(events, start, mapper_, camera_, start_, gyroscope_), result)) {
+      result.trial.outcome = StartTrial::Outcome::kNoMap;
+      return result;
+    }
   }
+  const double trial_from_s = start.poses.end_s();
+  bool is_on_trial = start.given_until_s == kNoGivenPoses;
   Stream stream{events, count_until_s(events, path_.back().t_s)};
   if (progress) progress(stream.done);
   tracker_.start(stream.rest());
@@ -137,8 +142,18 @@ OdometryResult Odometry::run(std::span<const Event> events, const PathEstimate& 
       result.latency_ms.push_back(clock.age_ms(pose->last_ns));
     if (progress) progress(stream.done - before);
     add_pose(*pose, result);
+    if (is_on_trial && now_s > trial_from_s + kStartTrial_s) {
+      result.trial = start_trial(result.poses, events, trial_from_s);
+      is_on_trial = false;
+      if (!result.trial.is_passed()) break;
+    }
     if (!job_ && !is_lost_ && wants_keyframe()) begin_mapping(events.first(stream.done), now_s);
     if (job_ && is_due(now_s)) end_mapping(now_s, result);
+  }
+  if (is_on_trial) result.trial = start_trial(result.poses, events, trial_from_s);
+  if (!result.trial.is_passed()) {
+    job_.reset();
+    return result;
   }
   if (job_) end_mapping(path_.back().t_s, result);
   if (wants_last_keyframe()) {
@@ -236,13 +251,10 @@ bool Odometry::is_due(double now_s) const {
   return job_->mapping.wait_for(std::chrono::seconds(0)) != std::future_status::timeout;
 }
 
-void Odometry::start_from(FirstMap first, OdometryResult& result) {
+bool Odometry::start_from(FirstMap first, OdometryResult& result) {
   Keyframe& keyframe = first.mapping.keyframe;
   const bool has_map = keyframe.edges.size() >= Mapper::kMinEdges;
-  if (!has_map && first.path.given_until_s == kNoGivenPoses)
-    throw InputError("start",
-                     "the path that was found from events alone makes no map: begin elsewhere "
-                     "(--start-s), or give poses (start.truth_s)");
+  if (!has_map && first.path.given_until_s == kNoGivenPoses) return false;
   if (!has_map)
     throw InputError("start",
                      "the events of the known poses show no edges in depth: the camera must "
@@ -267,6 +279,7 @@ void Odometry::start_from(FirstMap first, OdometryResult& result) {
   output(result);
   for (TrackedPose& pose : result.poses) monitor_->judge(pose);
   tracker_.reset(ns_from_seconds(last_keyframe_.t_s), last_keyframe_.world_from_camera);
+  return true;
 }
 
 double Odometry::moved_m() const {

@@ -20,6 +20,7 @@
 #include "estimator/odometry/event_clock.h"
 #include "estimator/odometry/mapper.h"
 #include "estimator/odometry/start/first_map.h"
+#include "estimator/odometry/start/start_trial.h"
 #include "estimator/tracking/check/pose_monitor.h"
 #include "estimator/tracking/edges/edge_tracker.h"
 
@@ -78,6 +79,7 @@ struct KeyframeChange {
 
 struct OdometryResult {
   std::vector<TrackedPose> poses;
+  StartTrial trial;  ///< a run ends with a trial that is not passed
   std::vector<KeyframeChange> changes;
   double extrapolated_s = 0;  ///< for so long given poses were extrapolated (first_map())
   /// The given poses tell hardly any depth: poses further from them than 2 % of it are lost.
@@ -112,7 +114,7 @@ class Odometry {
   /// `start`: the poses that are known at the start, at least two; `events` in order of time. Poses
   /// are found from the last of them on; those that were not given are part of the result, too, as
   /// last adjusted. `progress` is called with the number of events done since its last call. Throws
-  /// InputError where the start shows no edges.
+  /// InputError where a start that was given shows no edges; one that was found has its trial.
   [[nodiscard]] OdometryResult run(std::span<const Event> events, const PathEstimate& start,
                                    const std::function<void(std::size_t)>& progress = {});
 
@@ -145,7 +147,8 @@ class Odometry {
     [[nodiscard]] std::span<const Event> rest() const { return all.subspan(done); }
   };
 
-  void start_from(FirstMap first, OdometryResult& result);
+  /// False: it makes no map.
+  [[nodiscard]] bool start_from(FirstMap first, OdometryResult& result);
   void take(Keyframe keyframe, const Rigid3& world_from_camera);
   void take_map();
   void await_frame(const EventClock& clock, Stream& stream, OdometryResult& result);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "core/io/run/path_so_far.h"
 #include "core/process/progress.h"
 #include "core/stopwatch.h"
+#include "core/time_search.h"
 #include "estimator/odometry/metric_world.h"
 #include "estimator/odometry/odometry_config.h"
 #include "estimator/odometry/odometry_output.h"
@@ -67,28 +69,44 @@ void say_how_far(const Trajectory& start, const Dataset& dataset, const PinholeC
         start.end_s() - start.start_s(), moved_px));
 }
 
-/// The path at the start from events alone.
-Bootstrap found_start(const Dataset& dataset, const PinholeCamera& camera,
-                      std::span<const Event> events, const StartOptions& options,
-                      const Gyroscope& gyroscope) {
-  Bootstrap start = find_start(events, camera, options.found, gyroscope);
-  if (start.status == Bootstrap::Status::kNoMotion)
-    throw InputError(dataset.folder().string(),
-                     "the events show no motion that odometry could start from");
-  if (start.status == Bootstrap::Status::kUnexplained)
-    throw InputError(
-        dataset.folder().string(),
-        fmt::format(
-            "no motion of the camera that was tried explains the events at the start: they "
-            "show too few edges, or it shakes too fast or moves too little, for odometry to "
-            "start without poses (start.truth_s){}",
-            gyroscope.is_empty() ? " or a gyroscope (tracking.prediction: imu)" : ""));
-  if (start.parallax_px < kPoor_px)
-    show_notice(fmt::format(
-        "the start shows {:.2g} px of parallax alone: its directions of motion are hardly known, "
-        "and most depths may be assumed",
-        start.parallax_px));
-  return start;
+/// Why there is no start from events alone, if there is none.
+std::optional<std::string> refusal_of(const Bootstrap& start, const Gyroscope& gyroscope) {
+  switch (start.status) {
+    case Bootstrap::Status::kFound:
+      return std::nullopt;
+    case Bootstrap::Status::kNoMotion:
+      return "the events show no motion that odometry could start from";
+    case Bootstrap::Status::kUnexplained:
+      break;
+  }
+  return fmt::format(
+      "no motion of the camera that was tried explains the events at the start: they show too few "
+      "edges, or it shakes too fast or moves too little, for odometry to start without poses "
+      "(start.truth_s){}",
+      gyroscope.is_empty() ? " or a gyroscope (tracking.prediction: imu)" : "");
+}
+
+/// Why a start that was found is none, if it did not pass its trial.
+std::optional<std::string> refusal_of(const StartTrial& trial, const Bootstrap& start) {
+  const double at_s = start.path.start_s();
+  switch (trial.outcome) {
+    case StartTrial::Outcome::kPassed:
+      return std::nullopt;
+    case StartTrial::Outcome::kNoMap:
+      return fmt::format("the path that was found from events alone at {:.3f} s makes no map",
+                         at_s);
+    case StartTrial::Outcome::kNoPose:
+      return fmt::format(
+          "no pose follows the start that was found at {:.3f} s, so that nothing tells whether it "
+          "is right",
+          at_s);
+    case StartTrial::Outcome::kUnexplained:
+      break;
+  }
+  return fmt::format(
+      "the start that was found at {:.3f} s does not explain the events after it (probability "
+      "{:.2f})",
+      at_s, trial.probability);
 }
 
 /// What is known at the start, and how it came to be known.
@@ -99,27 +117,29 @@ struct Start {
   double seconds = 0;              ///< of work
 };
 
-Start start_of(const RunRequest& request, const Dataset& dataset, const PinholeCamera& camera,
-               std::span<const Event> events, const StartOptions& options,
-               const Gyroscope& gyroscope) {
+Start given_start_of(const RunRequest& request, const Dataset& dataset, const PinholeCamera& camera,
+                     std::span<const Event> events, const StartOptions& options) {
   Start start;
-  if (options.truth_s > 0) {
-    start.path.poses = start_poses(request, dataset, events, options);
-    say_how_far(start.path.poses, dataset, camera);
-    start.from_s = start.path.poses.end_s();
-    start.path.fixed_until_s = start.path.given_until_s = start.from_s;
-    return start;
-  }
-  if (request.poses_from)
-    throw InputError("--poses-from", "gives the poses of the start, and start.truth_s is 0");
-  refuse_smoothing(request, "it is of the poses of the start, and start.truth_s is 0");
-  const ScopedTimer clock(start.seconds);
-  start.found = found_start(dataset, camera, events, options, gyroscope);
-  start.from_s = start.found->path.start_s();
+  start.path.poses = start_poses(request, dataset, events, options);
+  say_how_far(start.path.poses, dataset, camera);
+  start.from_s = start.path.poses.end_s();
+  start.path.fixed_until_s = start.path.given_until_s = start.from_s;
+  return start;
+}
+
+Start start_of(Bootstrap found, double depth_m) {
+  if (found.parallax_px < kPoor_px)
+    show_notice(fmt::format(
+        "the start shows {:.2g} px of parallax alone: its directions of motion are hardly known, "
+        "and most depths may be assumed",
+        found.parallax_px));
+  Start start;
+  start.from_s = found.path.start_s();
   // All but the first pose may change.
-  start.path.poses = start.found->path;
+  start.path.poses = found.path;
   start.path.fixed_until_s = start.from_s;
-  start.path.typical_depth_m = options.found.depth_m;
+  start.path.typical_depth_m = depth_m;
+  start.found = std::move(found);
   return start;
 }
 
@@ -169,6 +189,7 @@ OdometryFound run_stages(const OdometryInput& input, const Start& start,
       progress.add(n);
       so_far.show(odometry->path());
     });
+    if (!found.result.trial.is_passed()) return found;
     if (!odometry->wants_batch_adjustment()) continue;
     Progress steps("batch", BatchAdjustmentOptions().steps(), "steps");
     odometry->adjust(input.events, start.path, found.result, [&](std::size_t n) { steps.add(n); });
@@ -182,32 +203,71 @@ OdometryFound run_stages(const OdometryInput& input, const Start& start,
   return found;
 }
 
-/// Throws InputError where the poses of the trial of a start that was found are more likely wrong,
-/// or where there are none although the recording goes on.
-void check_start(const OdometryInput& input, const Start& start, const OdometryFound& found) {
-  if (!start.found) return;
-  const double from_s = start.found->path.end_s();
-  double sum = 0, count = 0;
-  for (const TrackedPose& pose : found.result.poses) {
-    const double t_s = seconds_from_ns(pose.t_ns);
-    if (t_s <= from_s || t_s > from_s + kStartTrial_s) continue;
-    sum += pose.probability;
-    ++count;
+/// A start and what follows from it.
+struct Attempt {
+  Start start;
+  OdometryFound found;
+};
+
+/// The first start from events alone that passes its trial, with the run that followed. Throws
+/// InputError where there is none, with what was wrong with the first.
+Attempt first_that_passes(const OdometryInput& input, const OdometryConfig& config, int repeat,
+                          PathSoFar& so_far, std::vector<double>& wall_s) {
+  const std::span<const Event> events = input.events;
+  const double end_s = seconds_from_ns(events.back().t_ns);
+  double from_s = seconds_from_ns(events.front().t_ns), retry_s = kStartRetry_s;
+  constexpr const char* kAdvice = ": begin elsewhere (--start-s), or give poses (start.truth_s)";
+  double seconds = 0;  // of work
+  bool is_found = false;
+  std::optional<std::string> first_refusal;
+  while (true) {
+    Attempt attempt;
+    Bootstrap start;
+    {
+      const ScopedTimer clock(seconds);
+      start = find_start(events.subspan(count_before(events, ns_from_seconds(from_s))),
+                         input.camera, config.start.found, input.gyroscope);
+    }
+    std::optional<std::string> refusal = refusal_of(start, input.gyroscope);
+    // After a start that was wrong none is believed that has no trial.
+    const bool is_last =
+        refusal.has_value() || (first_refusal && start.path.end_s() + kStartTrial_s / 2 > end_s);
+    if (!is_last) {
+      attempt.start = start_of(start, config.start.found.depth_m);
+      attempt.start.seconds = seconds;
+      std::vector<double> spent_s;
+      attempt.found = run_stages(input, attempt.start, config, repeat, so_far, spent_s);
+      refusal = refusal_of(attempt.found.result.trial, start);
+      if (!refusal) {
+        wall_s = std::move(spent_s);
+        return attempt;
+      }
+      // Those of the work before are in it.
+      seconds = spent_s.front();
+      is_found = true;
+      show_notice(*refusal + ": another start is looked for");
+      from_s = start.path.start_s() + retry_s;
+      retry_s *= kStartRetryGrowth;
+    }
+    if (!first_refusal) first_refusal = refusal;
+    if (is_last || from_s >= end_s)
+      throw InputError(input.dataset.folder().string(), *first_refusal + (is_found ? kAdvice : ""));
   }
-  const bool goes_on = from_s + kStartTrial_s <= seconds_from_ns(input.events.back().t_ns);
-  if (count == 0 && goes_on)
-    throw InputError(input.dataset.folder().string(),
-                     fmt::format("no pose follows the start that was found at {:.3f} s, so that "
-                                 "nothing tells whether it is right: begin elsewhere (--start-s), "
-                                 "or give poses (start.truth_s)",
-                                 start.found->path.start_s()));
-  if (count > 0 && sum < 0.5 * count)
-    throw InputError(
-        input.dataset.folder().string(),
-        fmt::format("the start that was found at {:.3f} s does not explain the events after it "
-                    "(probability {:.2f}): begin elsewhere (--start-s), or give poses "
-                    "(start.truth_s)",
-                    start.found->path.start_s(), sum / count));
+}
+
+Attempt attempt_of(const RunRequest& request, const OdometryInput& input,
+                   const OdometryConfig& config, PathSoFar& so_far, std::vector<double>& wall_s) {
+  if (config.start.truth_s > 0) {
+    Attempt attempt;
+    attempt.start =
+        given_start_of(request, input.dataset, input.camera, input.events, config.start);
+    attempt.found = run_stages(input, attempt.start, config, request.repeat, so_far, wall_s);
+    return attempt;
+  }
+  if (request.poses_from)
+    throw InputError("--poses-from", "gives the poses of the start, and start.truth_s is 0");
+  refuse_smoothing(request, "it is of the poses of the start, and start.truth_s is 0");
+  return first_that_passes(input, config, request.repeat, so_far, wall_s);
 }
 
 /// Scale and gravity by the samples. Given poses have a world and metres of their own.
@@ -291,18 +351,17 @@ RunSummary run_odometry(const RunRequest& request, const OdometryConfig& config)
   const OdometryInput input = load(request, config);
   io.reset();
   const Events& events = input.events;
-  const Start start =
-      start_of(request, input.dataset, input.camera, events, config.start, input.gyroscope);
-  // What is scored begins where the given poses end, or where those that were found begin.
-  RunRecord::Window window =
-      window_of(request, seconds_from_ns(events.front().t_ns), seconds_from_ns(events.back().t_ns));
-  window.start_s = start.from_s;
   timing.events = events.size();
   timing.sequence_s = seconds_from_ns(events.back().t_ns - events.front().t_ns);
 
   PathSoFar so_far(writer.path(), request.dataset);
-  OdometryFound found = run_stages(input, start, config, request.repeat, so_far, timing.wall_s);
-  check_start(input, start, found);
+  Attempt attempt = attempt_of(request, input, config, so_far, timing.wall_s);
+  const Start& start = attempt.start;
+  OdometryFound& found = attempt.found;
+  // What is scored begins where the given poses end, or where those that were found begin.
+  RunRecord::Window window =
+      window_of(request, seconds_from_ns(events.front().t_ns), seconds_from_ns(events.back().t_ns));
+  window.start_s = start.from_s;
   if (config.align_imu) align(found, input, !start.found);
   report_gaps(events.back().t_ns, found.result.poses);
   take_timing(found, start, config.odometry.mode == OdometryMode::kOnline, timing);

@@ -10,6 +10,7 @@
 #include "estimator/odometry/start/extrapolated_path.h"
 #include "estimator/odometry/start/flow_motion.h"
 #include "estimator/odometry/start/plane_search.h"
+#include "estimator/odometry/start/start_trial.h"
 #include "estimator/odometry/start/tile_flow.h"
 
 namespace saccade {
@@ -39,10 +40,6 @@ constexpr double kStep_px = 2;
 constexpr int kFlowRounds = 3;  ///< each with the motion of the one before as the rough one
 constexpr BurstLimits kFlowBursts{.gap = 0.15, .longest = 1};  ///< as of PlaneSearch
 constexpr std::size_t kFlowEvents = 100000;                    ///< of a window
-constexpr double kRetry_s = 0.1;  ///< where a window gives no start the next begins so much later
-/// Each time that the camera moved and there still was none, the longer: the search of a long
-/// recording without a start takes a time that grows with the logarithm of its length.
-constexpr double kRetryGrowth = 1.2;
 
 /// The events with from_s <= t < to_s, as seconds.
 std::span<const Event> between(std::span<const Event> events, double from_s, double to_s) {
@@ -302,13 +299,13 @@ Bootstrap find_start(std::span<const Event> events, const PinholeCamera& camera,
   if (events.empty()) return start;
   StartFinder finder(camera, options, gyroscope);
   const double end_s = seconds_from_ns(events.back().t_ns);
-  double from_s = seconds_from_ns(events.front().t_ns), retry_s = kRetry_s;
+  double from_s = seconds_from_ns(events.front().t_ns), retry_s = kStartRetry_s;
   while (!events.empty()) {
     const Bootstrap found = finder.from(events);
     // Where the camera moved at some time, that is what there is to say.
     if (found.status != Bootstrap::Status::kNoMotion) start = found;
     if (found.status == Bootstrap::Status::kFound) break;
-    if (found.status != Bootstrap::Status::kNoMotion) retry_s *= kRetryGrowth;
+    if (found.status != Bootstrap::Status::kNoMotion) retry_s *= kStartRetryGrowth;
     from_s += retry_s;
     if (from_s >= end_s) break;
     events = between(events, from_s, end_s);

@@ -10,9 +10,11 @@
 
 namespace saccade {
 
-/// After a start that was found poses are tracked for so long before it is believed: a start on
-/// wrong evidence makes a map on which the next events do not lie.
-constexpr double kStartTrial_s = 0.1;
+/// Where there is no start, or one that fails its trial, the next is looked for so much later.
+inline constexpr double kStartRetry_s = 0.1;
+/// Each time that the camera moved and there still was none, the longer: the search of a long
+/// recording without a start takes a time that grows with the logarithm of its length.
+inline constexpr double kStartRetryGrowth = 1.2;
 
 struct BootstrapOptions {
   double depth_m = 1;          ///< the scale is free: the typical depth is called so
@@ -42,7 +44,7 @@ struct Bootstrap {
 /// as many events as the best the one of least parallax. With a gyroscope the flow is not needed: of the
 /// plane's motions the path by which most events lie on edges is taken. The path is extrapolated by
 /// little at a time: the longer it is, the better it distinguishes rotation from translation, but no hand
-/// keeps its velocity for long. Where no trial (kStartTrial_s) follows, the flow must tell the direction.
+/// keeps its velocity for long. Where no trial (start_trial.h) follows, the flow must tell the direction.
 /// A camera that only rotates starts, too, at hardly any parallax; with a gyroscope it does not. Where it
 /// rests, the start begins later. `events` in order of time; `camera` with its lens; `gyroscope`, where it
 /// is not empty, measures the rotation. Deterministic.

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -237,6 +238,28 @@ TEST_F(OdometryModule, RefusesAStartThatTheNextEventsDoNotLieOn) {
   EXPECT_THAT(error_of([&] { return run_odometry(run); }),
               HasSubstr("does not explain the events after it"));
   EXPECT_FALSE(fs::exists(run.output));
+}
+
+TEST_F(OdometryModule, LooksForAnotherStartWhereOneFailsItsTrial) {
+  // Until then the picture is mirrored: the camera seems to move the other way, and nothing of what
+  // is mapped is seen again.
+  constexpr double kMirroredUntil_s = 0.27, kLongEnd_s = 0.7;
+  const testing::PlanarWorld world = testing::corner_world(160, 120);
+  Events events = world.simulate(steady_glide, 0, kLongEnd_s, 1e-3, 0.15);
+  for (Event& event : events)
+    if (seconds_from_ns(event.t_ns) < kMirroredUntil_s)
+      event.x = static_cast<std::uint16_t>(159 - event.x);
+  RunRequest run = request("mirrored", without_poses());
+  run.dataset = folder_.path() / "mirrored_data";
+  write_steady(run.dataset, events, kLongEnd_s);
+  const RunSummary summary = run_odometry(run);
+  const Trajectory found = read_trajectory(run.output / "trajectory.txt");
+  EXPECT_GT(found.start_s(), 0.1);
+  EXPECT_LT(found.start_s(), kLongEnd_s / 2);
+  EXPECT_GT(found.end_s(), kLongEnd_s - 0.05);
+  // A pose every millisecond: but for the mirrored ones none is lost.
+  EXPECT_LT(static_cast<double>(summary.lost_poses),
+            1e3 * std::max(0.0, kMirroredUntil_s - found.start_s()) + 20);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "core/imu_sample.h"
 #include "core/random.h"
+#include "estimator/odometry/start/start_trial.h"
 #include "tests/support/planar_world.h"
 
 namespace saccade {
