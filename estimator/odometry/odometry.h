@@ -186,7 +186,6 @@ class Odometry {
   double given_until_s_ = kNoGivenPoses;
   double held_until_s_ = 0;   ///< poses of the start until then never change: they fix the gauge
   double mapped_from_s_ = 0;  ///< events before are not mapped any more
-  bool is_lost_ = false;
   std::vector<TimeNs>
       lost_ns_;  ///< times of the poses that the tracker, not their check, says are lost
   double last_search_s_ = -std::numeric_limits<double>::infinity();
@@ -195,8 +194,9 @@ class Odometry {
   StampedPose last_keyframe_;   ///< the camera when the last one was begun
   double interval_from_s_ = 0;  ///< when the last was begun that did not double a baseline
   double baseline_m_ = 0;       ///< that the map's depths rest on, or that was tried
-  bool is_scale_guessed_ = false;
   double typical_depth_m_ = 1;
+  bool is_lost_ = false;
+  bool is_scale_guessed_ = false;
   std::unique_ptr<Job> job_;
 };
 

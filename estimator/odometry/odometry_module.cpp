@@ -209,6 +209,10 @@ struct Attempt {
   OdometryFound found;
 };
 
+/// So many starts are tried: two in three that are found pass, and those of a shaken camera take up
+/// to a minute each.
+constexpr int kMostStarts = 5;
+
 /// The first start from events alone that passes its trial, with the run that followed. Throws
 /// InputError where there is none, with what was wrong with the first.
 Attempt first_that_passes(const OdometryInput& input, const OdometryConfig& config, int repeat,
@@ -216,43 +220,39 @@ Attempt first_that_passes(const OdometryInput& input, const OdometryConfig& conf
   const std::span<const Event> events = input.events;
   const double end_s = seconds_from_ns(events.back().t_ns);
   double from_s = seconds_from_ns(events.front().t_ns), retry_s = kStartRetry_s;
-  constexpr const char* kAdvice = ": begin elsewhere (--start-s), or give poses (start.truth_s)";
   double seconds = 0;  // of work
-  bool is_found = false;
-  std::optional<std::string> first_refusal;
-  while (true) {
-    Attempt attempt;
-    Bootstrap start;
+  std::string first_refusal;
+  for (int i = 0; i < kMostStarts; ++i) {
+    Bootstrap found;
     {
       const ScopedTimer clock(seconds);
-      start = find_start(events.subspan(count_before(events, ns_from_seconds(from_s))),
+      found = find_start(events.subspan(count_before(events, ns_from_seconds(from_s))),
                          input.camera, config.start.found, input.gyroscope);
     }
-    std::optional<std::string> refusal = refusal_of(start, input.gyroscope);
-    // After a start that was wrong none is believed that has no trial.
-    const bool is_last =
-        refusal.has_value() || (first_refusal && start.path.end_s() + kStartTrial_s / 2 > end_s);
-    if (!is_last) {
-      attempt.start = start_of(start, config.start.found.depth_m);
-      attempt.start.seconds = seconds;
-      std::vector<double> spent_s;
-      attempt.found = run_stages(input, attempt.start, config, repeat, so_far, spent_s);
-      refusal = refusal_of(attempt.found.result.trial, start);
-      if (!refusal) {
-        wall_s = std::move(spent_s);
-        return attempt;
-      }
-      // Those of the work before are in it.
-      seconds = spent_s.front();
-      is_found = true;
-      show_notice(*refusal + ": another start is looked for");
-      from_s = start.path.start_s() + retry_s;
-      retry_s *= kStartRetryGrowth;
+    if (const auto refusal = refusal_of(found, input.gyroscope)) {
+      if (i == 0) throw InputError(input.dataset.folder().string(), *refusal);
+      break;
     }
-    if (!first_refusal) first_refusal = refusal;
-    if (is_last || from_s >= end_s)
-      throw InputError(input.dataset.folder().string(), *first_refusal + (is_found ? kAdvice : ""));
+    // After a start that was wrong none is believed that has no trial.
+    if (i > 0 && found.path.end_s() + kStartTrial_s / 2 > end_s) break;
+    Attempt attempt{start_of(found, config.start.found.depth_m), {}};
+    attempt.start.seconds = seconds;
+    std::vector<double> spent_s;  // with the seconds before
+    attempt.found = run_stages(input, attempt.start, config, repeat, so_far, spent_s);
+    const auto refusal = refusal_of(attempt.found.result.trial, found);
+    if (!refusal) {
+      wall_s = std::move(spent_s);
+      return attempt;
+    }
+    if (i == 0) first_refusal = *refusal;
+    show_notice(*refusal + ": another start is looked for");
+    seconds = spent_s.front();
+    from_s = found.path.start_s() + retry_s;
+    retry_s *= kStartRetryGrowth;
+    if (from_s >= end_s) break;
   }
+  throw InputError(input.dataset.folder().string(),
+                   first_refusal + ": begin elsewhere (--start-s), or give poses (start.truth_s)");
 }
 
 Attempt attempt_of(const RunRequest& request, const OdometryInput& input,
