@@ -67,7 +67,7 @@ class WindowProblem {
     if (edges_.edges.size() < kMinEdges) return result;
     add_edges();
     add_nodes();
-    add_parallax_prior();
+    if (holds_scale()) add_parallax_prior();
     if (options_.surface_sigma > 0) surface_.add_to(bundle_);
     result.residual_before_px = residual_sigma_px();
     result.ok =
@@ -177,6 +177,12 @@ class WindowProblem {
             std::make_unique<LinearPriorCost<6>>(smooth, Twist::Zero(), std::vector<double>{-1, 1}),
             {correction_.data(i - 1), correction_.data(i)});
     }
+  }
+
+  /// By given poses, or a start's surface at the depth that is its unit. Nothing else would keep the
+  /// parallax prior from shortening the path, most of all where no landmark is known yet.
+  [[nodiscard]] bool holds_scale() const {
+    return options_.surface_sigma > 0 || priors_.given_until_s != kNoGivenPoses;
   }
 
   void add_parallax_prior() {
