@@ -221,13 +221,15 @@ Attempt first_that_passes(const OdometryInput& input, const OdometryConfig& conf
   const double end_s = seconds_from_ns(events.back().t_ns);
   double from_s = seconds_from_ns(events.front().t_ns), retry_s = kStartRetry_s;
   double seconds = 0;  // of work
-  std::string first_refusal;
-  for (int i = 0; i < kMostStarts; ++i) {
+  std::string first_refusal, last_refusal;
+  for (int i = 0; i < kMostStarts && from_s < end_s; ++i) {
+    if (i > 0) show_notice(last_refusal + ": another start is looked for");
+    const std::size_t passed_over = i == 0 ? 0 : count_before(events, ns_from_seconds(from_s));
     Bootstrap found;
     {
       const ScopedTimer clock(seconds);
-      found = find_start(events.subspan(count_before(events, ns_from_seconds(from_s))),
-                         input.camera, config.start.found, input.gyroscope);
+      found = find_start(events.subspan(passed_over), input.camera, config.start.found,
+                         input.gyroscope);
     }
     if (const auto refusal = refusal_of(found, input.gyroscope)) {
       if (i == 0) throw InputError(input.dataset.folder().string(), *refusal);
@@ -245,11 +247,10 @@ Attempt first_that_passes(const OdometryInput& input, const OdometryConfig& conf
       return attempt;
     }
     if (i == 0) first_refusal = *refusal;
-    show_notice(*refusal + ": another start is looked for");
-    seconds = spent_s.front();
+    last_refusal = *refusal;
+    seconds = spent_s.back();
     from_s = found.path.start_s() + retry_s;
     retry_s *= kStartRetryGrowth;
-    if (from_s >= end_s) break;
   }
   throw InputError(input.dataset.folder().string(),
                    first_refusal + ": begin elsewhere (--start-s), or give poses (start.truth_s)");
@@ -351,6 +352,9 @@ RunSummary run_odometry(const RunRequest& request, const OdometryConfig& config)
   const OdometryInput input = load(request, config);
   io.reset();
   const Events& events = input.events;
+  // What is scored begins where the given poses end, or where those that were found begin.
+  RunRecord::Window window =
+      window_of(request, seconds_from_ns(events.front().t_ns), seconds_from_ns(events.back().t_ns));
   timing.events = events.size();
   timing.sequence_s = seconds_from_ns(events.back().t_ns - events.front().t_ns);
 
@@ -358,9 +362,6 @@ RunSummary run_odometry(const RunRequest& request, const OdometryConfig& config)
   Attempt attempt = attempt_of(request, input, config, so_far, timing.wall_s);
   const Start& start = attempt.start;
   OdometryFound& found = attempt.found;
-  // What is scored begins where the given poses end, or where those that were found begin.
-  RunRecord::Window window =
-      window_of(request, seconds_from_ns(events.front().t_ns), seconds_from_ns(events.back().t_ns));
   window.start_s = start.from_s;
   if (config.align_imu) align(found, input, !start.found);
   report_gaps(events.back().t_ns, found.result.poses);

@@ -39,6 +39,7 @@ ParallaxPrior::Seen ParallaxPrior::seen_by(const EdgeObservation& observation,
 }
 
 double ParallaxPrior::start_edge(double depth_sigma) {
+  if (seen_.empty()) return 0;
   double sum = 0, weights = 0;
   for (const Seen& event : seen_) {
     sum += event.information * event.parallax;

@@ -67,7 +67,7 @@ class WindowProblem {
     if (edges_.edges.size() < kMinEdges) return result;
     add_edges();
     add_nodes();
-    if (holds_scale()) add_parallax_prior();
+    if (options_.has_parallax_prior && holds_scale()) add_parallax_prior();
     if (options_.surface_sigma > 0) surface_.add_to(bundle_);
     result.residual_before_px = residual_sigma_px();
     result.ok =

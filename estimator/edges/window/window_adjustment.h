@@ -38,6 +38,8 @@ struct WindowAdjustmentOptions {
   /// edges are independent.
   double surface_sigma = 0;
   double surface_spacing_px = 15;  ///< of the surface's nodes
+  /// A ParallaxPrior, where something holds the scale; not needed where rotations are measured.
+  bool has_parallax_prior = true;
 };
 
 /// A time before all others.

@@ -50,7 +50,9 @@ PathRefinementOptions measuring_rotation(PathRefinementOptions options,
                                          const Gyroscope& gyroscope) {
   /// Sigma of rotations over that of translations, as image motion.
   constexpr double kRotationSigmaRatio = 0.05;
-  if (!gyroscope.is_empty()) options.adjustment.rotation_sigma_ratio = kRotationSigmaRatio;
+  if (gyroscope.is_empty()) return options;
+  options.adjustment.rotation_sigma_ratio = kRotationSigmaRatio;
+  options.adjustment.has_parallax_prior = false;
   return options;
 }
 

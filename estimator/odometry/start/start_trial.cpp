@@ -17,7 +17,7 @@ StartTrial start_trial(std::span<const TrackedPose> poses, std::span<const Event
   }
   StartTrial trial;
   if (count == 0) {
-    const bool goes_on = until_s <= seconds_from_ns(events.back().t_ns);
+    const bool goes_on = (from_s + until_s) / 2 <= seconds_from_ns(events.back().t_ns);
     if (goes_on) trial.outcome = StartTrial::Outcome::kNoPose;
     return trial;
   }

@@ -16,7 +16,7 @@ struct StartTrial {
   enum class Outcome {
     kPassed,       ///< also of a start that was given, which has no trial
     kNoMap,        ///< the start shows no edges to track the camera by
-    kNoPose,       ///< none follows although the recording goes on
+    kNoPose,       ///< none follows although half of a trial or more does
     kUnexplained,  ///< they are more likely wrong than right
   };
   Outcome outcome = Outcome::kPassed;
