@@ -9,8 +9,8 @@
 namespace saccade {
 namespace {
 
-/// Edges of one outline and nodes next to each other do not vary independently: there are fewer free
-/// depths than edges. Of 0, 1/4, 1/2 and 1 this had the smallest errors on generated worlds.
+/// Edges of one outline and nodes next to each other do not vary independently: there are fewer
+/// free depths than edges. Of 0, 1/4, 1/2 and 1 this had the smallest errors on generated worlds.
 constexpr double kIndependent = 0.5;
 
 /// The derivative of 1/(2 n) ln(1 + n sigma^2 I) by I / 2, what counts as independent of it.

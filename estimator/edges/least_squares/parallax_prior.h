@@ -22,21 +22,23 @@ struct FreeSurface {
 /// is, the more noise is explained by depths that are free to vary, of which there are more than
 /// unknowns of the path (Neyman and Scott, Econometrica 1948). With the depths integrated out, the
 /// posterior of the path alone has for every edge the term
-///   1/2 ln(1 + s^2 I) + 1/(2 n) ln(1 + n S^2 I'),   I = sum over its events of (p - mean p)^2 / sigma^2,
+///   1/2 ln(1 + s^2 I) + 1/(2 n) ln(1 + n S^2 I'),
+///   I = sum over its events of (p - mean p)^2 / sigma^2,
 /// where p is an event's parallax across the edge per inverse depth, s the sigma of the edge's
 /// inverse depth before its events, S that of a node of the surface which n edges share, and I' the
-/// mean of I: these edges have several directions. (The mean of p is taken up by the edge's own
-/// place.) The gradient is that of a Gaussian prior on the translation of each twist of the path's
-/// correction, which this adds up. It depends on the parallax, so that it is for one step of an
-/// iteration.
+/// mean of I over all edges, since those that share a node have several directions. (The mean of p
+/// is taken up by the edge's own place, but where a landmark knows that.) Half of the gradient is
+/// that of a Gaussian prior on the translation of each twist of the path's correction, which this
+/// adds up; its information is an upper bound of the term's own. It is of the parallax that there was
+/// when it was taken, and renewed with the edges, not from iteration to iteration.
 class ParallaxPrior {
  public:
   /// Of a correction of so many twists; `camera` has no lens.
   ParallaxPrior(const PinholeCamera& camera, std::size_t twists, const FreeSurface& surface)
       : camera_(camera), surface_(surface), twists_(twists) {}
 
-  /// `depth_sigma`: of the edge's inverse depth, from the surface where there is one [1/m]. `events`
-  /// are its own, whose observations say where it is in its view.
+  /// `depth_sigma`: of the edge's inverse depth, from the surface where there is one [1/m].
+  /// `events` are its own, whose observations say where it is in its view.
   template <int kSupport>
   void add_edge(double depth_sigma, std::span<const BundleEvent<kSupport>> events) {
     seen_.clear();

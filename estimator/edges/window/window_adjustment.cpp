@@ -179,8 +179,8 @@ class WindowProblem {
     }
   }
 
-  /// By given poses, or a start's surface at the depth that is its unit. Nothing else would keep the
-  /// parallax prior from shortening the path, most of all where no landmark is known yet.
+  /// By the given poses of the run, or a start's surface, whose depth is the unit. Nothing else
+  /// would keep the parallax prior from shortening the path, most where no landmark is known yet.
   [[nodiscard]] bool holds_scale() const {
     return options_.surface_sigma > 0 || priors_.given_until_s != kNoGivenPoses;
   }

@@ -38,7 +38,7 @@ struct WindowAdjustmentOptions {
   /// edges are independent.
   double surface_sigma = 0;
   double surface_spacing_px = 15;  ///< of the surface's nodes
-  /// A ParallaxPrior, where something holds the scale; not needed where rotations are measured.
+  /// A ParallaxPrior, where something holds the scale. Starts by a gyroscope have none.
   bool has_parallax_prior = true;
 };
 
@@ -64,10 +64,11 @@ struct WindowAdjustment {
 
 /// Bundle adjustment over a sliding window (Triggs et al., 2000), edges in place of points: a
 /// NodeCorrection of the path, and of every edge the inverse depth, offset, tilt and hysteresis. It
-/// minimises the residual of edge_residual.h with the noise model of edge_noise.h as an EdgeBundle,
-/// with what the freedom of all these depths makes of the path taken out again (ParallaxPrior). The
-/// fixed poses and the landmarks on which edges lie constrain the gauge. All edges are then fitted to the corrected path one by one. Deterministic
-/// for any number of threads.
+/// minimises the residual of edge_residual.h with the noise model of edge_noise.h as an EdgeBundle.
+/// What the freedom of all these depths adds to the path's parallax is taken out where poses are
+/// given or edges lie on a surface (ParallaxPrior). The fixed poses and the landmarks on which edges
+/// lie constrain the gauge. All edges are then fitted to the corrected path one by one.
+/// Deterministic for any number of threads.
 [[nodiscard]] WindowAdjustment adjust_window(const ViewWindow& window, const WindowEdgels& edges,
                                              const PinholeCamera& camera,
                                              const WindowPriors& priors,
